@@ -169,6 +169,8 @@ struct CampaignResult {
   Execution execution = Execution::kOpenLoop;
   std::vector<ComparedFluents> compared;  // by symbol
   SimulatorInfo simulator;
+  /// What carries the hands of the built-in mobile robot; empty: there is none, or another's.
+  std::string arms;
   std::string tool_version;
   std::string replay_folder;  // run folder as the user wrote it
   std::vector<TraceResult> traces;

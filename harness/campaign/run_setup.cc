@@ -53,6 +53,7 @@ void describe_run(const Scenario& scenario, const CampaignOptions& options,
   result.criterion = scenario.criterion;
   result.comparison = scenario.comparison();
   result.compared = compared_fluents(*scenario.mapping, fluents, result.comparison);
+  if (scenario.simulator.is_built_in()) result.arms = arms_text(scenario.world);
   result.tool_version = options.tool_version;
   result.replay_folder = options.run_dir.string();
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <tuple>
 
@@ -272,19 +273,38 @@ CameraSpec read_camera(const YamlNode& node, base::DiagnosticSink& sink) {
   return camera;
 }
 
+/// Keys of an arm on a gantry that say nothing of a chain.
+void refuse_of_gantries(const YamlFields& fields) {
+  for (const auto key : {Key::kJoint, Key::kShoulderM, Key::kReachM}) {
+    const auto* node = fields.find(key);
+    if (node == nullptr) continue;
+    fields.sink().error(codes::kUnknownKey, node->range, key,
+                        fmt::format("{}, which has `{}`", fields.what(), Key::kChain));
+  }
+}
+
 ArmSpec read_arm(const YamlEntry& entry, base::DiagnosticSink& sink) {
   ArmSpec arm;
   arm.name = entry.key;
   YamlFields fields(entry.value, fmt::format("the arm `{}`", entry.key), sink);
-  fields.only({Key::kJoint, Key::kFingerJoint, Key::kPalmBody, Key::kNearPadBody, Key::kFarPadBody,
-               Key::kShoulderM, Key::kReachM, Key::kCarryM, Key::kOpeningM, Key::kGripForceN});
+  fields.only({Key::kJoint, Key::kChain, Key::kFingerJoint, Key::kPalmBody, Key::kNearPadBody,
+               Key::kFarPadBody, Key::kShoulderM, Key::kReachM, Key::kCarryM, Key::kOpeningM,
+               Key::kGripForceN});
   fields.text(Key::kJoint, arm.joint);
+  fields.texts(Key::kChain, arm.chain);
+  const bool is_chain = fields.find(Key::kChain) != nullptr;
+  if (is_chain) refuse_of_gantries(fields);
   fields.text(Key::kFingerJoint, arm.finger_joint);
   fields.text(Key::kPalmBody, arm.palm_body);
   fields.text(Key::kNearPadBody, arm.near_pad_body);
   fields.text(Key::kFarPadBody, arm.far_pad_body);
-  fields.require(Key::kShoulderM);
-  fields.require(Key::kCarryM);
+  if (is_chain) {
+    // What follows from the joints is filled in when all of them are read.
+    arm.carry_B.setConstant(std::numeric_limits<double>::quiet_NaN());
+  } else {
+    fields.require(Key::kShoulderM);
+    fields.require(Key::kCarryM);
+  }
   read_vector(fields, Key::kShoulderM, arm.p_BS);
   read_vector(fields, Key::kCarryM, arm.carry_B);
   read_pair(fields, Key::kReachM, arm.min_reach_m, arm.max_reach_m);

@@ -44,6 +44,7 @@ struct Key {
   static constexpr std::string_view kCells = "cells";
   static constexpr std::string_view kCentreM = "centre_m";
   static constexpr std::string_view kCfm = "cfm";
+  static constexpr std::string_view kChain = "chain";
   static constexpr std::string_view kChild = "child";
   static constexpr std::string_view kCloseTimeoutS = "close_timeout_s";
   static constexpr std::string_view kCollides = "collides";
@@ -248,6 +249,9 @@ struct Key {
   static constexpr std::string_view kTimeS = "time_s";
   static constexpr std::string_view kTimestepS = "timestep_s";
   static constexpr std::string_view kToleranceM = "tolerance_m";
+  static constexpr std::string_view kStiffnessNM = "stiffness_n_m";
+  static constexpr std::string_view kStiffnessNmRad = "stiffness_nm_rad";
+  static constexpr std::string_view kSuspension = "suspension";
   static constexpr std::string_view kTorso = "torso";
   static constexpr std::string_view kTowards = "towards";
   static constexpr std::string_view kTrace = "trace";

@@ -6,6 +6,7 @@
 #include "compiler/base/codes/scenarios.h"
 #include "harness/config/sections.h"
 #include "harness/engine/world_check.h"
+#include "harness/world/chain_arm.h"
 #include "harness/world/density.h"
 #include "harness/world/world_layout.h"
 
@@ -67,6 +68,20 @@ void refuse_other_types(const YamlFields& fields, JointType type) {
     for (const auto key : {Key::kAtM, Key::kRangeRad, Key::kDampingNmS}) refuse(key, "hinges");
     if (type != JointType::kSlider) refuse(Key::kDampingNSM, "sliders");
   }
+  if (type != JointType::kGantry) refuse(Key::kSuspension, "gantries");
+}
+
+SuspensionSpec read_suspension(const YamlNode& node, base::DiagnosticSink& sink) {
+  SuspensionSpec springs;
+  YamlFields fields(node, key_text(Key::kSuspension), sink);
+  fields.only({Key::kStiffnessNM, Key::kDampingNSM, Key::kStiffnessNmRad, Key::kDampingNmS});
+  fields.require(Key::kStiffnessNM);
+  fields.require(Key::kStiffnessNmRad);
+  fields.number(Key::kStiffnessNM, kPositive, springs.stiffness_n_m);
+  fields.number(Key::kDampingNSM, kNotNegative, springs.damping_n_s_m);
+  fields.number(Key::kStiffnessNmRad, kPositive, springs.stiffness_nm_rad);
+  fields.number(Key::kDampingNmS, kNotNegative, springs.damping_nm_s);
+  return springs;
 }
 
 JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
@@ -76,7 +91,7 @@ JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
   YamlFields fields(entry.value, fmt::format("the joint `{}`", entry.key), sink);
   fields.only({Key::kType, Key::kParent, Key::kChild, Key::kAxis, Key::kRangeM, Key::kMaxForceN,
                Key::kMaxTorqueNm, Key::kHandle, Key::kAtM, Key::kRangeRad, Key::kDampingNSM,
-               Key::kDampingNmS});
+               Key::kDampingNmS, Key::kSuspension});
   const auto type = fields.choice(Key::kType, "type of joint", kTypes);
   if (type == std::size_t{1}) joint.type = JointType::kFixed;
   if (type == std::size_t{2}) joint.type = JointType::kGantry;
@@ -105,6 +120,9 @@ JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
   fields.number(Key::kMaxForceN, kNotNegative, joint.max_force_n);
   fields.number(Key::kMaxTorqueNm, kNotNegative, joint.max_torque_nm);
   if (const auto* handle = fields.find(Key::kHandle)) joint.handle = read_handle(*handle, sink);
+  if (const auto* springs = fields.find(Key::kSuspension)) {
+    joint.suspension = read_suspension(*springs, sink);
+  }
   return joint;
 }
 
@@ -206,6 +224,7 @@ WorldSpec read_world(const YamlNode& node, base::DiagnosticSink& sink) {
   std::sort(world.joints.begin(), world.joints.end(), by_name);
   std::sort(world.places.begin(), world.places.end(), by_name);
   if (sink.error_count() != errors_before) return world;
+  complete_chains(world);
   for (const auto& problem : check_world(world)) {
     auto error =
         sink.error(codes::kBadWorld, range_of(node, problem.path), problem.path, problem.message);

@@ -382,8 +382,42 @@ void OdeBuilder::create_gantries() {
                           linear.y(), linear.z());
       dJointSetAMotorAxis(gantry.angular, axis, 0, angular.x(), angular.y(), angular.z());
     }
+    if (spec.suspension) suspend(*spec.suspension, gantry);
     engine_.gantries.push_back(gantry);
   }
+}
+
+namespace {
+
+/// A spring and a damper taken at the end of the step: user guide, section 3.8.2.
+struct Softness {
+  double share, cfm;
+  Softness(double stiffness, double damping, double timestep_s)
+      : share(timestep_s * stiffness / (timestep_s * stiffness + damping)),
+        cfm(1.0 / (timestep_s * stiffness + damping)) {}
+};
+
+}  // namespace
+
+void OdeBuilder::suspend(const SuspensionSpec& springs, Gantry& gantry) const {
+  const double step_s = spec_.solver.timestep_s;
+  const Softness height(springs.stiffness_n_m, springs.damping_n_s_m, step_s);
+  const Softness tilt(springs.stiffness_nm_rad, springs.damping_nm_s, step_s);
+  gantry.vertical_share = height.share;
+  gantry.tilt_share = tilt.share;
+  dJointSetLMotorParam(gantry.linear, dParamCFM3, height.cfm);
+  dJointSetAMotorParam(gantry.angular, dParamCFM1, tilt.cfm);
+  dJointSetAMotorParam(gantry.angular, dParamCFM2, tilt.cfm);
+  const WorldLayout& layout = engine_.layout;
+  double weight_n = 0.0;
+  for (std::size_t i = 0; i < layout.links.size(); ++i) {
+    const BodyId member = layout.links[layout.links.id_at(i)].members.front();
+    const bool carried =
+        layout.assembly_of[member.index()] == layout.assembly_of[gantry.child_id.index()];
+    if (!carried || dBodyGetGravityMode(engine_.links[i]) == 0) continue;
+    weight_n -= engine_.masses_kg[i] * spec_.solver.gravity_m_s2;
+  }
+  gantry.preload_m_s = weight_n * height.cfm;
 }
 
 void set_free_mass(OdeWorld::Engine& engine, BodyId id, double mass_kg) {

@@ -43,6 +43,10 @@ struct Gantry {
   BodyId parent_id, child_id;                         // the first is meaningless without a parent
   Eigen::Vector3d start_P = Eigen::Vector3d::Zero();  // of the child in the parent by default [m]
   double start_yaw_rad = 0.0;
+  // Share of an error that a step takes back, and what of the weight the spring carries at rest, as
+  // a velocity; those of a rigid one.
+  double vertical_share = 1.0, preload_m_s = 0.0;
+  double tilt_share = 0.0;  // of a suspended one
 };
 
 /// What the motors of a gantry are told, until they have been told it: velocities in the parent's
@@ -140,6 +144,7 @@ class OdeBuilder {
   void create_sliders();
   void create_gantries();
   void create_hinges();
+  void suspend(const SuspensionSpec& springs, Gantry& gantry) const;
   dxJoint* damper_of(const JointSpec& spec);
   dxJoint* turner_of(const JointSpec& spec);
   dxBody* body_of(const std::string& name) const;

@@ -38,12 +38,13 @@ void carry_out(const OdeWorld& world, const OdeWorld::Engine& engine, GantryId i
   const Eigen::Vector3d centre = to_vector(dBodyGetPosition(gantry.child));
   const Eigen::Vector3d arm_P = R_WP.transpose() * (measured - centre);
   const double turning = reachable_yaw_rate(child, parent, spec, order, engine.solver.timestep_s);
-  const Eigen::Vector3d velocity =
-      order.velocity_m_s + turning * Eigen::Vector3d::UnitZ().cross(arm_P);
+  Eigen::Vector3d velocity = order.velocity_m_s + turning * Eigen::Vector3d::UnitZ().cross(arm_P);
+  velocity.z() = gantry.vertical_share * velocity.z() + gantry.preload_m_s;
   // The tilt that has crept in is taken back at the rate of the engine's own joints.
   const Eigen::Vector3d up = world.rotation(gantry.child_id).col(2);
+  const double tilt_share = spec.suspension ? gantry.tilt_share : engine.solver.erp;
   const Eigen::Vector3d back =
-      up.cross(Eigen::Vector3d::UnitZ()) * (engine.solver.erp / engine.solver.timestep_s);
+      up.cross(Eigen::Vector3d::UnitZ()) * (tilt_share / engine.solver.timestep_s);
   const double rigid = dInfinity;
   const double vertical_n = gantry.parent == nullptr ? rigid : spec.max_force_n;
   dJointSetLMotorParam(gantry.linear, dParamVel1, velocity.x());

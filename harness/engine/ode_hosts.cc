@@ -91,9 +91,10 @@ void Hosts::add_joint(RobotJoint::Kind kind, std::size_t index, const JointSpec&
     if (link) joint.parent = link->index();
   }
   joint.parts = std::move(parts);
-  // One host cannot fall for one part and not for another.
-  joint.may_rest = !joint.parent || dBodyGetGravityMode(links_[*joint.parent].own) ==
-                                        dBodyGetGravityMode(links_[joint.child].own);
+  // One host cannot fall for one part and not for another, and what stands on springs gives way.
+  joint.may_rest =
+      !spec.suspension && (!joint.parent || dBodyGetGravityMode(links_[*joint.parent].own) ==
+                                                dBodyGetGravityMode(links_[joint.child].own));
   joints_.push_back(std::move(joint));
 }
 

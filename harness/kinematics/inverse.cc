@@ -27,17 +27,6 @@ double halton(int index, int base) {
   return sum;
 }
 
-JointVector spread_start(const SerialChain& chain, int index) {
-  JointVector q(chain.size());
-  for (Eigen::Index i = 0; i < chain.size(); ++i) {
-    const ChainJoint& joint = chain.joints()[static_cast<std::size_t>(i)];
-    const double low = std::max(joint.low, -std::numbers::pi);
-    const double high = std::min(joint.high, std::numbers::pi);
-    q(i) = low + (high - low) * halton(index, kPrimes[static_cast<std::size_t>(i)]);
-  }
-  return q;
-}
-
 class Descent {
  public:
   Descent(const SerialChain& chain, const Eigen::Isometry3d& goal, const InverseOptions& options)
@@ -137,12 +126,23 @@ Eigen::Matrix<double, 6, 1> pose_error(const Eigen::Isometry3d& from, const Eige
   return error;
 }
 
+JointVector spread_positions(const SerialChain& chain, int index) {
+  JointVector q(chain.size());
+  for (Eigen::Index i = 0; i < chain.size(); ++i) {
+    const ChainJoint& joint = chain.joints()[static_cast<std::size_t>(i)];
+    const double low = std::max(joint.low, -std::numbers::pi);
+    const double high = std::min(joint.high, std::numbers::pi);
+    q(i) = low + (high - low) * halton(index, kPrimes[static_cast<std::size_t>(i)]);
+  }
+  return q;
+}
+
 InverseResult solve_inverse(const SerialChain& chain, const Eigen::Isometry3d& X_RT,
                             const JointVector& start, const InverseOptions& options) {
   const Descent descent(chain, X_RT, options);
   InverseResult best = descent.run(start);
   for (int i = 1; i <= options.restarts && !best.reached; ++i) {
-    InverseResult other = descent.run(spread_start(chain, i));
+    InverseResult other = descent.run(spread_positions(chain, i));
     if (other.reached || weighed(other, options) < weighed(best, options)) best = other;
   }
   return best;
@@ -150,7 +150,7 @@ InverseResult solve_inverse(const SerialChain& chain, const Eigen::Isometry3d& X
 
 InverseResult solve_inverse_from(const SerialChain& chain, const Eigen::Isometry3d& X_RT, int index,
                                  const InverseOptions& options) {
-  return Descent(chain, X_RT, options).run(spread_start(chain, index));
+  return Descent(chain, X_RT, options).run(spread_positions(chain, index));
 }
 
 }  // namespace parallax::harness

@@ -30,6 +30,10 @@ struct InverseResult {
 InverseResult solve_inverse(const SerialChain& chain, const Eigen::Isometry3d& X_RT,
                             const JointVector& start, const InverseOptions& options = {});
 
+/// Places that are spread evenly over the ranges of the joints, `index` from 1: Halton's sequence.
+/// Joints without stops stay within half a turn.
+JointVector spread_positions(const SerialChain& chain, int index);
+
 /// Positions from the start that comes `index`-th, from 1, after the given one; no others follow
 /// it.
 InverseResult solve_inverse_from(const SerialChain& chain, const Eigen::Isometry3d& X_RT, int index,

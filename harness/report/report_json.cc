@@ -258,6 +258,7 @@ Json json_of(const CampaignResult& result, bool with_timing) {
                       {"version", result.simulator.version},
                       {"determinism", result.simulator.determinism},
                       {"timestep_s", result.simulator.timestep_s}};
+  if (!result.arms.empty()) out["simulator"]["arms"] = result.arms;
   out["criterion"] = base::parse_ordered_json(criterion_json(result.criterion));
   out["criterion"]["source"] = source_of(result.criterion.kind);
   out["criterion"]["may_be_watched"] = may_be_watched(result.criterion.kind);

@@ -48,6 +48,7 @@ class TextReport {
       text += fmt::format(", steps of {:.6g} ms", 1000.0 * simulator.timestep_s);
     }
     line("simulator", text);
+    if (!result_.arms.empty()) line("arms", result_.arms);
     line("seed", fmt::format("{}", result_.seed));
     line("criterion", criterion_text(result_.criterion, result_.spending));
     line("source", source_of(result_.criterion.kind));

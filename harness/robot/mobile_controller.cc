@@ -11,52 +11,11 @@
 namespace parallax::harness {
 namespace {
 
-constexpr double kStep_m = 0.010;    // of the sweeps
-constexpr double kRetreat_m = 0.05;  // between the retreats that are tried
-constexpr int kRetreats = 11;        // up to 0.5 m
-constexpr double kHeight_m = 0.10;   // between the heights
-constexpr double kSame_m = 1e-6;
-
-/// Straight ways from a fixed start, in coordinates of the world.
-class Ways {
- public:
-  Ways(const Sweep& sweep, const Eigen::Vector3d& from) : sweep_(sweep), from_(from) {}
-
-  bool free(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    const auto hit = sweep_.along(a - from_, b - a, kStep_m);
-    if (hit) blocked_ = hit;
-    return !hit;
-  }
-  const std::optional<Obstacle>& blocked() const { return blocked_; }
-
- private:
-  const Sweep& sweep_;
-  Eigen::Vector3d from_;
-  std::optional<Obstacle> blocked_;
-};
-
-/// The retreats from `point` from which the way up to `height_m` is free, nearest first.
-std::vector<Eigen::Vector3d> shafts(Ways& ways, const Eigen::Vector3d& point,
-                                    const Eigen::Vector3d& back, double height_m) {
-  std::vector<Eigen::Vector3d> found;
-  Eigen::Vector3d last = point;
-  for (int i = 0; i < kRetreats && found.size() < 3; ++i) {
-    const Eigen::Vector3d foot = point + i * kRetreat_m * back;
-    if (!ways.free(last, foot)) break;
-    last = foot;
-    if (ways.free(foot, {foot.x(), foot.y(), height_m})) found.push_back(foot);
-  }
-  return found;
-}
-
-Eigen::Vector3d raised(const Eigen::Vector3d& p, double height_m) {
-  return {p.x(), p.y(), height_m};
-}
-
 constexpr double kToolAcceleration_m_s2 = 0.5;
 constexpr double kToolTolerance_m = 0.001;
 constexpr double kToolApproachRate_hz = 10.0;
 constexpr Motion kWrist{1.5, 4.0, kWristTolerance_rad, 10.0};  // radians
+constexpr Motion kSwing{0.8, 1.6, 0.002, 10.0};                // radians of the farthest joint
 constexpr Motion kFinger{0.10, 0.5, kFingerTolerance_m, 10.0};
 constexpr double kCloseSpeed_m_s = 0.05;
 /// Room round the arm that a way is looked for with, the most first. The last is for ways that
@@ -64,32 +23,6 @@ constexpr double kCloseSpeed_m_s = 0.05;
 constexpr std::array kRoom_m = {0.04, 0.015, 0.005, -0.002};
 
 }  // namespace
-
-ToolPath find_tool_path(const Sweep& sweep, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-                        const Eigen::Vector3d& back, double ceiling_m) {
-  Ways ways(sweep, from);
-  if (ways.free(from, to)) return {{to}, std::nullopt};
-  const double lowest_m = std::max(from.z(), to.z());
-  for (double height_m = lowest_m; height_m <= std::max(ceiling_m, lowest_m) + kSame_m;
-       height_m += kHeight_m) {
-    const auto starts = shafts(ways, from, back, height_m);
-    const auto ends = starts.empty() ? starts : shafts(ways, to, back, height_m);
-    for (const Eigen::Vector3d& start : starts) {
-      for (const Eigen::Vector3d& end : ends) {
-        if (!ways.free(raised(start, height_m), raised(end, height_m))) continue;
-        ToolPath path;
-        Eigen::Vector3d last = from;
-        for (const Eigen::Vector3d& corner :
-             {start, raised(start, height_m), raised(end, height_m), end, to}) {
-          if ((corner - last).norm() > kSame_m) path.corners.push_back(corner);
-          last = corner;
-        }
-        return path;
-      }
-    }
-  }
-  return {{}, ways.blocked()};
-}
 
 MobileController::MobileController(const ControlContext& context, const Arguments& arguments)
     : PhasedController(context), arguments_(arguments) {
@@ -107,7 +40,9 @@ Eigen::Vector3d MobileController::target_point() const {
   return {std::isnan(x) ? p.x() : x, std::isnan(y) ? p.y() : y, std::isnan(z) ? p.z() : z};
 }
 
-bool MobileController::require_reach(const Eigen::Vector3d& tool_W, const std::string& what) {
+bool MobileController::require_reach(const Eigen::Vector3d& tool_W, double wrist_rad,
+                                     const std::string& what) {
+  if (arm().chain() != nullptr) return require_chain_reach(tool_W, wrist_rad, what);
   const double distance_m = (tool_W - robot().shoulder(arm())).norm();
   const ArmSpec& spec = arm().spec();
   const double margin_m = std::min(spec.max_reach_m - distance_m, distance_m - spec.min_reach_m);
@@ -119,17 +54,29 @@ bool MobileController::require_reach(const Eigen::Vector3d& tool_W, const std::s
   return false;
 }
 
-BodyMask MobileController::arm_and_load() const {
-  BodyMask mask(world().layout().bodies.size(), false);
-  for (const BodyId id : arm().bodies()) mask[id.index()] = true;
-  if (const auto load = context().grasp.held_body(arm().gripper())) mask[load->index()] = true;
-  return mask;
+bool MobileController::require_chain_reach(const Eigen::Vector3d& tool_W, double wrist_rad,
+                                           const std::string& what) {
+  const PalmChain& chain = *arm().chain();
+  const InverseResult found = chain.reach(tool_W, wrist_rad);
+  if (found.reached) return true;
+  std::string text = fmt::format(
+      "{} is beyond the joints of the {} arm: the tool comes to within "
+      "{} and {:.2f} rad",
+      what, arm().spec().name, metres(found.short_m), found.short_rad);
+  const auto& joints = chain.arm().chain.joints();
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if ((found.at_stop >> i & 1U) != 0) text += fmt::format(", `{}` at its stop", joints[i].name);
+  }
+  refuse_with(kManipulationUnreachable, text, {{"reach", -found.short_m}});
+  return false;
 }
 
-Sweep MobileController::arm_sweep(BodyId touched) const {
-  BodyMask ignored = robot().parts();
-  ignored[touched.index()] = true;
-  return {world(), arm_and_load(), ignored, 0.0};
+ArmWays MobileController::arm_ways(std::optional<BodyId> touched, double tolerance_m) const {
+  BodyMask ignored(world().layout().bodies.size(), false);
+  if (touched) ignored[touched->index()] = true;
+  return {
+      world(),         arm(),      context().grasp.held_body(arm().gripper()), std::move(ignored),
+      robot().parts(), tolerance_m};
 }
 
 void MobileController::add_tool_move(std::string_view name, std::function<Eigen::Vector3d()> target,
@@ -151,6 +98,43 @@ void MobileController::add_tool_move_until(std::string_view name,
       [this, done = std::move(done)] { return done() || arm().tool_at_rest(); });
 }
 
+ToolPath MobileController::find_path(const Eigen::Vector3d& goal, double ceiling_m) const {
+  ToolPath path;
+  for (const double room_m : kRoom_m) {
+    ArmWays ways = arm_ways(std::nullopt, -room_m);
+    const StretchTest test = [&ways](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+      return ways.along(a, b);
+    };
+    path = find_tool_path(test, arm().tool(), goal, -robot().base().heading(), ceiling_m);
+    // Each stretch is free in some posture; the arm has to be led through all in a row.
+    auto fault = ways.follow(path.corners);
+    if (!fault && !path.corners.empty()) return path;
+    if (fault) path = {{}, std::move(fault)};
+  }
+  return path;
+}
+
+bool MobileController::add_swings(const Eigen::Vector3d& goal) {
+  for (const double room_m : kRoom_m) {
+    const auto ways = arm_ways(std::nullopt, -room_m).swings(goal);
+    if (ways.empty()) continue;
+    for (const ChainWay& way : ways) {
+      const double farthest = (way.last() - way.samples.front()).cwiseAbs().maxCoeff();
+      add(
+          "swinging",
+          [this, way, farthest] {
+            arm().swing_along(way, kSwing);
+            return patience_s(farthest, kSwing);
+          },
+          [this] { return arm().tool_at_rest(); });
+    }
+    add_tool_move(
+        "reaching", [goal] { return goal; }, tool_motion());
+    return true;
+  }
+  return false;
+}
+
 void MobileController::add_tool_path(std::string_view name,
                                      std::function<Eigen::Vector3d()> target) {
   add(
@@ -158,16 +142,12 @@ void MobileController::add_tool_path(std::string_view name,
       [this, name, target = std::move(target)] {
         const Eigen::Vector3d goal = target();
         const double ceiling_m = std::max(robot().carry_point(arm()).z(), arm().tool().z()) + 0.1;
-        ToolPath path;
-        for (std::size_t i = 0; i < kRoom_m.size() && path.corners.empty(); ++i) {
-          const Sweep sweep(world(), arm_and_load(), robot().parts(), -kRoom_m[i]);
-          path = find_tool_path(sweep, arm().tool(), goal, -robot().base().heading(), ceiling_m);
-        }
+        const ToolPath path = find_path(goal, ceiling_m);
+        if (path.corners.empty() && add_swings(goal)) return 0.0;
         if (path.corners.empty()) {
           refuse_with(kManipulationUnreachable,
-                      path.blocked ? fmt::format("no free way for the {} arm: `{}` meets `{}`",
-                                                 arm().spec().name, path.blocked->part,
-                                                 path.blocked->obstacle)
+                      path.blocked ? fmt::format("no free way for the {} arm: {}",
+                                                 arm().spec().name, path.blocked->text())
                                    : "no free way");
           return 0.0;
         }

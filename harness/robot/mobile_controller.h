@@ -7,23 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/engine/sweep.h"
 #include "harness/robot/controller.h"
+#include "harness/robot/tool_path.h"
 
 namespace parallax::harness {
-
-/// The corners of a way of the tool, its start left out; or what was in the way of the last try.
-struct ToolPath {
-  std::vector<Eigen::Vector3d> corners;
-  std::optional<Obstacle> blocked;
-};
-
-/// A way from `from` to `to` on which the shapes of `sweep` (standing at `from`) meet nothing:
-/// straight, or back along `back` (a unit vector), up, across, down and forward again, with the
-/// shortest retreats and the lowest height that will do. Heights end at `ceiling_m`. No other ways
-/// are tried. Cost: up to some hundred straight sweeps.
-ToolPath find_tool_path(const Sweep& sweep, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-                        const Eigen::Vector3d& back, double ceiling_m);
 
 /// Words that the reasons of failed actions begin with: what CRAM calls the condition.
 inline constexpr std::string_view kNavigationUnreachable = "navigation-pose-unreachable";
@@ -50,15 +37,17 @@ class MobileController : public PhasedController {
   /// The argument `target.x` (`.y`, `.z`), or the place that the argument `place` names.
   Eigen::Vector3d target_point() const;
 
-  /// Refuses unless the tool at `tool_W` lies within reach; true if it does.
-  bool require_reach(const Eigen::Vector3d& tool_W, const std::string& what);
-  /// The arm and what it holds, against all but the robot and `touched`: what the arm is for.
-  Sweep arm_sweep(BodyId touched) const;
+  /// Refuses unless the tool can be at `tool_W` with the wrist turned to `wrist_rad`; true if it
+  /// can: within the reach of a gantry, or by some positions of the joints of a chain.
+  bool require_reach(const Eigen::Vector3d& tool_W, double wrist_rad, const std::string& what);
+  /// Of the arm and what it holds, against all but the robot and `touched`: what the arm is for.
+  ArmWays arm_ways(std::optional<BodyId> touched, double tolerance_m) const;
   void add_tool_move(std::string_view name, std::function<Eigen::Vector3d()> target, Motion motion);
   /// The same, but over as soon as `done`.
   void add_tool_move_until(std::string_view name, std::function<Eigen::Vector3d()> target,
                            Motion motion, std::function<bool()> done);
-  /// Finds a free way when it begins, or refuses.
+  /// Finds a free way when it begins, or refuses. Where the tool of a chain cannot be led there by
+  /// straight lines, all joints swing there at once, if that is free.
   void add_tool_path(std::string_view name, std::function<Eigen::Vector3d()> target);
   void add_wrist(double yaw_rad);  // against the robot's heading
   void add_opening(std::function<double()> opening_m);
@@ -69,7 +58,10 @@ class MobileController : public PhasedController {
   void refuse_with(std::string_view condition, const std::string& text, State margins = {});
 
  private:
-  BodyMask arm_and_load() const;
+  bool require_chain_reach(const Eigen::Vector3d& tool_W, double wrist_rad,
+                           const std::string& what);
+  bool add_swings(const Eigen::Vector3d& goal);
+  ToolPath find_path(const Eigen::Vector3d& goal, double ceiling_m) const;
 
   Arguments arguments_;
   Arm* arm_ = nullptr;

@@ -37,9 +37,10 @@ class MoveDrawer : public MobileController {
   }
 
   /// Both ends of the hand's way are within reach.
-  bool require_way(const Eigen::Vector3d& tool_W) {
+  bool require_way(const Eigen::Vector3d& tool_W, double wrist_rad) {
     const std::string what = fmt::format("the handle of `{}`", joint().name);
-    return require_reach(tool_W, what) && require_reach(tool_W + travel(), what);
+    return require_reach(tool_W, wrist_rad, what) &&
+           require_reach(tool_W + travel(), wrist_rad, what);
   }
 
   /// Moves the drawer from where the hand is at it, and the hand away from it by `back`.
@@ -57,13 +58,12 @@ class MoveDrawer : public MobileController {
   }
 
   void check_way_in(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-    const auto hit = arm_sweep(child_).along(from - arm().tool(), to - from, 0.01);
-    if (!hit) return;
+    const auto fault = arm_ways(child_, 0.0).along(from, to);
+    if (!fault) return;
     State margins;
-    if (hit->clearance_m) margins["clearance"] = *hit->clearance_m;
+    if (fault->hit && fault->hit->clearance_m) margins["clearance"] = *fault->hit->clearance_m;
     refuse_with(kManipulationUnreachable,
-                fmt::format("at the handle `{}` would meet `{}`", hit->part, hit->obstacle),
-                std::move(margins));
+                fmt::format("at the handle {}", fault->text("would meet")), std::move(margins));
   }
 
  private:
@@ -100,7 +100,7 @@ class OpenDrawer final : public MoveDrawer {
     const Eigen::Vector3d grip =
         handle_in_world() - arm().pad_line(wrist) * (0.5 * arm().spec().opening_m -
                                                      0.5 * handle().width_m - clearance_m);
-    if (!require_way(grip)) return;
+    if (!require_way(grip, wrist)) return;
     const Eigen::Vector3d back = -number("standoff_m") * handle().approach.normalized();
     const Eigen::Vector3d standoff = grip + back;
     add_wrist(wrist);
@@ -137,7 +137,7 @@ class CloseDrawer final : public MoveDrawer {
     const Eigen::Vector3d push =
         handle_in_world() - arm().palm_offset() -
         ahead * (0.5 * handle().width_m + arm().palm_half_extent_m(ahead, wrist));
-    if (!require_way(push)) return;
+    if (!require_way(push, wrist)) return;
     const Eigen::Vector3d standoff = push - number("standoff_m") * ahead;
     add_wrist(wrist);
     add_tool_path("reaching", [standoff] { return standoff; });

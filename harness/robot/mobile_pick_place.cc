@@ -46,7 +46,7 @@ class PickUp final : public MobileController {
     to_near_ = arm().pad_line(wrist);
     target_ = *perception().believed(object_) + turn * grasp_.p_BG -
               to_near_ * (0.5 * arm().spec().opening_m - 0.5 * grasp_.width_m - clearance_m);
-    if (!require_reach(target_, fmt::format("`{}`", name_of(object_)))) return;
+    if (!require_reach(target_, wrist, fmt::format("`{}`", name_of(object_)))) return;
     add_phases(wrist, target_ - number("standoff_m") * way_in());
   }
 
@@ -100,19 +100,15 @@ class PickUp final : public MobileController {
 
   /// The way in and the lift are straight: what is in their way makes the pose unreachable.
   void check_last_stretch(const Eigen::Vector3d& standoff) {
-    const Sweep sweep = arm_sweep(object_);
-    const Eigen::Vector3d from = arm().tool();
-    auto hit = sweep.along(standoff - from, target_ - standoff, 0.01);
-    if (!hit) {
-      hit = sweep.along(target_ - from, number("lift_m") * Eigen::Vector3d::UnitZ(), 0.01);
-    }
-    if (!hit) return;
+    ArmWays ways = arm_ways(object_, 0.0);
+    auto fault = ways.along(standoff, target_);
+    if (!fault) fault = ways.along(target_, target_ + number("lift_m") * Eigen::Vector3d::UnitZ());
+    if (!fault) return;
     State margins;
-    if (hit->clearance_m) margins["clearance"] = *hit->clearance_m;
-    refuse_with(
-        kManipulationUnreachable,
-        fmt::format("at `{}` `{}` would meet `{}`", name_of(object_), hit->part, hit->obstacle),
-        std::move(margins));
+    if (fault->hit && fault->hit->clearance_m) margins["clearance"] = *fault->hit->clearance_m;
+    refuse_with(kManipulationUnreachable,
+                fmt::format("at `{}` {}", name_of(object_), fault->text("would meet")),
+                std::move(margins));
   }
 
   Outcome judge(std::string_view overdue) override {
@@ -151,7 +147,7 @@ class Place final : public MobileController {
     const Eigen::Vector3d p = world().position(*object_);
     const Eigen::Vector3d from_load = arm().tool() - Eigen::Vector3d(p.x(), p.y(), load.low.z());
     set_down_ = goal_ + from_load;
-    if (!require_reach(set_down_, "the place")) return;
+    if (!require_reach(set_down_, arm().wrist_rad(), "the place")) return;
     const Eigen::Vector3d above = set_down_ + hover_m * Eigen::Vector3d::UnitZ();
     add_tool_path("reaching", [above] { return above; });
     add_lowering();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "harness/world/chain_arm.h"
 #include "harness/world/structure_check.h"
 #include "harness/world/world_layout.h"
 
@@ -119,6 +120,10 @@ class MobileRobotChecker final : RoleChecker {
                         "does not carry the base's body");
     }
     check_one_machine(robot);
+    if (!problems_.empty()) return;
+    for (const ArmSpec& arm : robot.arms) {
+      if (!arm.chain.empty()) check_chain(spec_, layout_, arm, problems_);
+    }
   }
 
  private:
@@ -151,7 +156,9 @@ class MobileRobotChecker final : RoleChecker {
 
   void check_arm(const ArmSpec& arm) {
     const std::string path = "robot/arms/" + arm.name;
-    require_joint(path + "/joint", arm.joint, JointType::kGantry, "gantry");
+    if (arm.chain.empty()) {
+      require_joint(path + "/joint", arm.joint, JointType::kGantry, "gantry");
+    }
     require_joint(path + "/finger_joint", arm.finger_joint, JointType::kSlider, "slider");
     problems_.require_name(path + "/palm_body", body_names_, "body", arm.palm_body);
     problems_.require_name(path + "/near_pad_body", body_names_, "body", arm.near_pad_body);
@@ -159,6 +166,7 @@ class MobileRobotChecker final : RoleChecker {
     problems_.require(arm.opening_m > 0.0, path + "/opening_m", "is not positive");
     problems_.require(arm.grip_force_n > 0.0, path + "/grip_force_n", "is not positive");
     check_grip_force(path + "/grip_force_n", arm.grip_force_n, arm.finger_joint);
+    if (!arm.chain.empty()) return;
     problems_.require(arm.max_reach_m > arm.min_reach_m && arm.min_reach_m >= 0.0,
                       path + "/reach_m", "is empty");
     const double carried_m = (arm.carry_B - arm.p_BS).norm();
@@ -175,6 +183,7 @@ class MobileRobotChecker final : RoleChecker {
         if (assembly(body) == base) continue;
         add(path, fmt::format("no joints lead from `{}` to `{}`", robot.base_body, body));
       }
+      if (!arm.chain.empty()) continue;
       if (joint_named(arm.joint)->child != arm.palm_body) {
         add(path + "/joint", fmt::format("does not carry `{}`", arm.palm_body));
       }

@@ -223,6 +223,7 @@ class StructureChecker {
     if (joint.type == JointType::kGantry) {
       problems_.require_positive(path + "/max_force_n", joint.max_force_n);
       problems_.require_positive(path + "/max_torque_nm", joint.max_torque_nm);
+      if (joint.suspension) check_suspension(path + "/suspension", joint);
       return;
     }
     if (!joint.axis_W.allFinite() || joint.axis_W.norm() < 1e-9) {
@@ -235,6 +236,15 @@ class StructureChecker {
     } else {
       check_stops(path + "/range_m", joint);
     }
+  }
+
+  void check_suspension(const std::string& path, const JointSpec& joint) {
+    const SuspensionSpec& s = *joint.suspension;
+    if (!joint.parent.empty()) add(path, "belongs to gantries of the world");
+    problems_.require_positive(path + "/stiffness_n_m", s.stiffness_n_m);
+    problems_.require_positive(path + "/stiffness_nm_rad", s.stiffness_nm_rad);
+    problems_.require_not_negative(path + "/damping_n_s_m", s.damping_n_s_m);
+    problems_.require_not_negative(path + "/damping_nm_s", s.damping_nm_s);
   }
 
   void check_hinge(const std::string& path, const JointSpec& joint) {

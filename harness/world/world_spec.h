@@ -89,6 +89,14 @@ struct HandleSpec {
   double width_m = 0.016;
 };
 
+/// What carries the child of a gantry of the world in place of a hand that holds it upright at its
+/// height: a spring and a damper for the height, loaded so that the robot stands at its default
+/// height, and others against roll and pitch. The dampers work against a level at rest.
+struct SuspensionSpec {
+  double stiffness_n_m = 0.0, damping_n_s_m = 0.0;
+  double stiffness_nm_rad = 0.0, damping_nm_s = 0.0;
+};
+
 /// Position 0 is the default placement; positive moves the child along axis_W, or turns it about
 /// that by the right hand.
 struct JointSpec {
@@ -105,6 +113,7 @@ struct JointSpec {
   double damping_n_s_m = 0.0;                      // of a slider
   double damping_nm_s = 0.0;                       // of a hinge, per rad
   std::optional<HandleSpec> handle;
+  std::optional<SuspensionSpec> suspension;  // of a gantry of the world
 };
 
 /// Coulomb friction by pair of materials; the key is sorted ("box", "pad").
@@ -158,13 +167,14 @@ struct LineRobotSpec {
   double opening_m = 0.09;  // between the pads' inner faces when open
 };
 
-/// An arm of a mobile robot: a gripper that hangs from a palm, and the palm on a gantry. Its reach
-/// is that of the arm that the gantry stands for. Positions in the frame of the base, with the
-/// torso at its lowest where the torso carries them.
+/// An arm of a mobile robot: a gripper that hangs from a palm, and what carries the palm: a gantry,
+/// whose reach is that of the arm that it stands for, or a chain of joints. Positions in the frame
+/// of the base, with the torso at its lowest where the torso carries them.
 struct ArmSpec {
   std::string name;
-  std::string joint;         // gantry of the palm
-  std::string finger_joint;  // slider of the far pad, along the palm's y
+  std::string joint;               // gantry of the palm; empty:
+  std::vector<std::string> chain;  // hinges and sliders, from the robot to the palm
+  std::string finger_joint;        // slider of the far pad, along the palm's y
   std::string palm_body, near_pad_body, far_pad_body;
   Eigen::Vector3d p_BS = Eigen::Vector3d::Zero();     // shoulder [m]
   double min_reach_m = 0.25, max_reach_m = 0.95;      // of the tool from the shoulder

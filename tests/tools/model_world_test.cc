@@ -130,8 +130,8 @@ TEST_CASE("the plan's poses lie in regions, whatever the world is") {
 TEST_CASE("the kitchen's model is right about a world that is the kitchen's model") {
   const KitchenCopy cli;
   // Without what the words mean in physics.
-  const auto common = cli.read("kitchen/common.yaml");
-  cli.write("kitchen/common.yaml", common.substr(0, common.find("\nmapping:") + 1));
+  const auto common = cli.read("kitchen/household.yaml");
+  cli.write("kitchen/household.yaml", common.substr(0, common.find("\nmapping:") + 1));
   for (const std::string plan : {"plan1", "plan3"}) {
     cli.write("kitchen/own.yaml",
               "include: " + plan + ".yaml\nsimulator: {model: domain.e}\nexpect:\n");

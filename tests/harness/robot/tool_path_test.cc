@@ -19,7 +19,7 @@ class Hand {
 
   ToolPath path(const Eigen::Vector3d& to, double ceiling_m,
                 const Eigen::Vector3d& back = kBack) const {
-    return find_tool_path(sweep_, kFrom, to, back, ceiling_m);
+    return find_tool_path(swept(sweep_, kFrom), kFrom, to, back, ceiling_m);
   }
   bool is_free(const ToolPath& path) const {
     Eigen::Vector3d last = kFrom;
@@ -91,14 +91,14 @@ TEST_CASE("a wall as high as the ceiling blocks, and is named") {
   const auto path = hand.path(kTo, 1.0);
   CHECK(path.corners.empty());
   REQUIRE(path.blocked.has_value());
-  CHECK(path.blocked->part == "hand");
-  CHECK(path.blocked->obstacle == "wall");
+  CHECK(path.blocked->hit->part == "hand");
+  CHECK(path.blocked->hit->obstacle == "wall");
 }
 
 TEST_CASE("a goal inside of something is not reached") {
   const auto path = Hand({wall(0.5)}).path({0.5, 0.0, 0.3}, 1.5);
   CHECK(path.corners.empty());
-  CHECK(path.blocked->obstacle == "wall");
+  CHECK(path.blocked->hit->obstacle == "wall");
 }
 
 TEST_CASE("a ceiling below both ends still allows the height of the ends") {

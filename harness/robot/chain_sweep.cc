@@ -1,0 +1,72 @@
+#include "harness/robot/chain_sweep.h"
+
+#include <algorithm>
+#include <array>
+
+namespace parallax::harness {
+namespace {
+
+constexpr std::size_t kFirstApart = 2;  // joint whose parts the robot itself can be in the way of
+
+using Motions = std::array<Eigen::Isometry3d, kMostChainJoints>;
+
+}  // namespace
+
+ChainSweep::ChainSweep(const PhysicsWorld& world, const PalmChain& chain,
+                       std::optional<BodyId> load, const BodyMask& ignored, const BodyMask& robot,
+                       double tolerance_m)
+    : world_(world),
+      arm_(chain.arm()),
+      X_WR_(chain.root()),
+      ignored_(ignored),
+      tolerance_m_(std::max(tolerance_m, 0.0)) {
+  const auto& hangs_on = arm_.hangs_on;
+  const double room_m = std::max(-tolerance_m, 0.0);
+  Motions moved;
+  arm_.chain.motions(chain.positions(), moved);
+  for (std::size_t i = 0; i < hangs_on.size(); ++i) {
+    const BodyId id = world.layout().bodies.id_at(i);
+    const bool held = load && *load == id;
+    // All others are no part of the robot, or of its own arm.
+    all_but_robot_.push_back(!robot[i] || hangs_on[i] >= 0);
+    if (hangs_on[i] < 0 && !held) continue;
+    const std::size_t joint = held ? arm_.masses.size() - 1 : static_cast<std::size_t>(hangs_on[i]);
+    ignored_[i] = true;
+    add(id, joint, X_WR_ * moved[joint], room_m);
+  }
+}
+
+void ChainSweep::add(BodyId id, std::size_t joint, const Eigen::Isometry3d& X_WJ, double room_m) {
+  const BodySpec& body = world_.layout().bodies[id];
+  if (!body.collides) return;
+  for (const BodyShape& shape : body.shapes) {
+    Part part{body.name, joint, world_.placed(id, shape), {}, {}};
+    Eigen::Isometry3d X_WS = Eigen::Isometry3d::Identity();
+    X_WS.linear() = part.probe.R_WS;
+    X_WS.translation() = part.probe.p_WS;
+    part.X_JS = X_WJ.inverse() * X_WS;
+    part.own_size = part.probe.size_m;
+    part.probe.size_m += Eigen::Vector3d::Constant(2.0 * room_m);
+    parts_.push_back(part);
+  }
+}
+
+std::optional<Obstacle> ChainSweep::at(const JointVector& q) const {
+  Motions moved;
+  arm_.chain.motions(q, moved);
+  for (const Part& part : parts_) {
+    const Eigen::Isometry3d X_WS = X_WR_ * moved[part.joint] * part.X_JS;
+    Probe probe{part.probe.size_m, X_WS.translation(), X_WS.linear(), part.probe.form};
+    if (const auto hit = world_.find_obstacle(probe, ignored_, tolerance_m_)) {
+      return Obstacle{part.name, hit->first, 0.0};
+    }
+    if (part.joint < kFirstApart) continue;
+    probe.size_m = part.own_size;
+    if (const auto hit = world_.find_obstacle(probe, all_but_robot_, tolerance_m_)) {
+      if (hit->first != "floor") return Obstacle{part.name, hit->first, 0.0};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/engine/sweep.h"
+#include "harness/robot/palm_chain.h"
+
+namespace parallax::harness {
+
+/// An arm that is a chain, and what it holds, tried in other postures without moving anything: each
+/// shape that hangs on a joint, against everything else that is not in `ignored`. From the third
+/// joint on, the rest of the robot counts as in the way, too; what the first two carry sits in it.
+class ChainSweep {
+ public:
+  /// As the robot stands and the arm hangs at construction. Overlaps of at most `tolerance_m` count
+  /// as touching; a negative one asks for so much room all round, but not from the robot itself.
+  ChainSweep(const PhysicsWorld& world, const PalmChain& chain, std::optional<BodyId> load,
+             const BodyMask& ignored, const BodyMask& robot, double tolerance_m);
+
+  /// What meets what with the joints at `q`; the way is no part of it.
+  std::optional<Obstacle> at(const JointVector& q) const;
+
+ private:
+  struct Part {
+    std::string name;
+    std::size_t joint = 0;
+    Probe probe;               // grown by the room
+    Eigen::Isometry3d X_JS;    // moves with the joint
+    Eigen::Vector3d own_size;  // without the room
+  };
+  void add(BodyId id, std::size_t joint, const Eigen::Isometry3d& X_WJ, double room_m);
+
+  const PhysicsWorld& world_;
+  const ChainArm& arm_;
+  Eigen::Isometry3d X_WR_;
+  BodyMask ignored_, all_but_robot_;
+  double tolerance_m_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace parallax::harness
