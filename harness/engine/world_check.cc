@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "harness/engine/jaws.h"
+#include "harness/engine/mujoco_module.h"
 #include "harness/engine/physics_world.h"
 #include "harness/engine/sweep.h"
 #include "harness/engine/world_check.h"
@@ -255,6 +256,11 @@ void check_grippers(const WorldSpec& spec, ProblemList& problems) {
 
 std::vector<WorldProblem> check_world(const WorldSpec& spec) {
   ProblemList problems(check_structure(spec));
+  if (spec.engine == EngineKind::kMujoco && problems.empty()) {
+    if (const auto problem = mujoco_problem(spec)) {
+      problems.add("joints/" + problem->joint, problem->message + "; MuJoCo needs one");
+    }
+  }
   if (problems.empty()) check_geometry(spec, problems);
   if (problems.empty()) check_grippers(spec, problems);
   if (problems.empty()) check_overlaps(spec, problems);

@@ -212,8 +212,15 @@ struct MobileRobotSpec {
   std::vector<ArmSpec> arms;  // sorted by name
 };
 
+/// What steps a world.
+enum class EngineKind : std::uint8_t { kOde, kMujoco };
+inline std::string_view to_string(EngineKind kind) {
+  return kind == EngineKind::kMujoco ? "mujoco" : "ode";
+}
+
 /// Everything the engine needs; pure data, read from the scenario's `world` section.
 struct WorldSpec {
+  EngineKind engine = EngineKind::kOde;  // the scenario's `simulator`
   SolverSpec solver;
   FrictionSpec friction;
   std::string floor_material = "floor";

@@ -175,6 +175,7 @@ TEST_CASE("each third-party library stays behind its seam") {
   const std::vector<Seam> seams = {
       {"cadical", {"runtime/solver/cadical_solver.cc", "tools/bench/plain_cadical.cc"}},
       {"ode/", {"harness/engine/ode_"}},
+      {"mujoco/", {"harness/engine/mujoco_"}},
       {"sdf/", {"harness/import/sdf_reader.cc"}},
       {"urdf", {"harness/import/urdf_reader.cc"}},
       {"console_bridge/", {"harness/import/urdf_reader.cc"}},
@@ -206,6 +207,12 @@ TEST_CASE("only the maker of worlds knows which engine steps them") {
   bool made = false;
   for (const auto& file : source_files()) {
     for (const auto& include : includes_of(file)) {
+      const bool is_mujoco = include.target == "harness/engine/mujoco_world.h" ||
+                             include.target == "harness/engine/mujoco_engine.h";
+      if (is_mujoco) {
+        CHECK_MESSAGE(file.starts_with("harness/engine/mujoco_"),
+                      file << " includes " << include.target);
+      }
       if (!include.target.starts_with("harness/engine/ode_")) continue;
       made = made || file == "harness/engine/physics_world.cc";
       CHECK_MESSAGE(

@@ -8,9 +8,10 @@
 #include <functional>
 #include <numbers>
 
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 #include "harness/engine/world_check.h"
 #include "harness/world/shapes.h"
+#include "tests/harness/engine/engines.h"
 #include "tests/harness/world/hand_made.h"
 
 namespace parallax::harness {
@@ -40,8 +41,9 @@ JointSpec hinge(std::string name, std::string parent, std::string child,
 
 /// A checked world at the start.
 struct Running {
-  explicit Running(const WorldSpec& spec) : world(spec) {
-    REQUIRE(check_world(spec).empty());
+  Running(EngineKind engine, const WorldSpec& spec)
+      : owned(make_world(stepped_by(engine, spec))), world(*owned) {
+    REQUIRE(check_world(stepped_by(engine, spec)).empty());
     REQUIRE_FALSE(world.reset(default_placements(world.layout()), 1).has_value());
   }
   void run(double time_s) {
@@ -55,7 +57,8 @@ struct Running {
   double rate(const char* name) const {
     return world.hinge_rate_rad_s(*world.layout().find_hinge(name));
   }
-  OdeWorld world;
+  std::unique_ptr<PhysicsWorld> owned;
+  PhysicsWorld& world;
 };
 
 using Angles = std::array<double, 4>;  // two angles and their rates
@@ -102,70 +105,79 @@ double pendulum_angle(double time_s) {
 }
 
 TEST_CASE("a pendulum swings as its equation of motion says, the closer the shorter the step") {
-  const double expected = pendulum_angle(2.0);
-  std::array<double, 2> error{};
-  for (std::size_t i = 0; i < error.size(); ++i) {
-    Running running(pendulum(i == 0 ? 0.002 : 0.0005));
-    running.run(2.0);
-    error[i] = std::abs(running.angle("pivot") - expected);
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    const double expected = pendulum_angle(2.0);
+    std::array<double, 2> error{};
+    for (std::size_t i = 0; i < error.size(); ++i) {
+      Running running(engine, pendulum(i == 0 ? 0.002 : 0.0005));
+      running.run(2.0);
+      error[i] = std::abs(running.angle("pivot") - expected);
+    }
+    CHECK(error[0] < 0.02);
+    CHECK(error[1] < 0.005);
+    CHECK(error[1] < 0.5 * error[0]);
   }
-  CHECK(error[0] < 0.02);
-  CHECK(error[1] < 0.005);
-  CHECK(error[1] < 0.5 * error[0]);
 }
 
 TEST_CASE("an inertia that is given counts instead of the shapes") {
-  Running by_shape(pendulum(0.001));
-  by_shape.run(1.0);
-  WorldSpec spec = pendulum(0.001);
-  BodySpec& ball = spec.bodies.front();
-  ball.shapes = {BodyShape{{0.1, 0.2, 0.3}, {-0.4, 0.0, 0.1}}};  // of no account
-  ball.p_WB = {0.5, 0.0, 2.1};
-  ball.inertia =
-      InertiaSpec{{kRod_m - 0.5, 0.0, -0.1}, ball_inertia(1.5) * Eigen::Matrix3d::Identity()};
-  Running by_inertia(spec);
-  by_inertia.run(1.0);
-  CHECK(by_inertia.angle("pivot") == doctest::Approx(by_shape.angle("pivot")).epsilon(1e-6));
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    Running by_shape(engine, pendulum(0.001));
+    by_shape.run(1.0);
+    WorldSpec spec = pendulum(0.001);
+    BodySpec& ball = spec.bodies.front();
+    ball.shapes = {BodyShape{{0.1, 0.2, 0.3}, {-0.4, 0.0, 0.1}}};  // of no account
+    ball.p_WB = {0.5, 0.0, 2.1};
+    ball.inertia =
+        InertiaSpec{{kRod_m - 0.5, 0.0, -0.1}, ball_inertia(1.5) * Eigen::Matrix3d::Identity()};
+    Running by_inertia(engine, spec);
+    by_inertia.run(1.0);
+    CHECK(by_inertia.angle("pivot") == doctest::Approx(by_shape.angle("pivot")).epsilon(1e-6));
+  }
 }
 
 TEST_CASE("a double pendulum follows its equations for two seconds") {
-  const double m1 = 1.0, m2 = 0.7, l1 = 0.6, l2 = 0.5, g = kGravity_m_s2;
-  const double j1 = ball_inertia(m1), j2 = ball_inertia(m2);
-  // Angles from straight down, as Lagrange has them.
-  const auto change = [&](const Angles& at) {
-    const double d = at[0] - at[1];
-    const double a = (m1 + m2) * l1 * l1 + j1, b = m2 * l1 * l2 * std::cos(d),
-                 c = m2 * l2 * l2 + j2;
-    const double e =
-        -m2 * l1 * l2 * std::sin(d) * at[3] * at[3] - (m1 + m2) * g * l1 * std::sin(at[0]);
-    const double f = m2 * l1 * l2 * std::sin(d) * at[2] * at[2] - m2 * g * l2 * std::sin(at[1]);
-    const double determinant = a * c - b * b;
-    return Angles{at[2], at[3], (e * c - b * f) / determinant, (a * f - b * e) / determinant};
-  };
-  const double quarter = 0.5 * std::numbers::pi;
-  const Angles expected = solved({quarter, 0.0, 0.0, 0.0}, 2.0, change);
-  std::array<double, 2> error{};
-  for (std::size_t i = 0; i < error.size(); ++i) {
-    WorldSpec spec = world_of(
-        {round_body("first", ShapeForm::kSphere, kBall_m, 0.0, {-l1, 0.0, 3.0}, m1),
-         round_body("second", ShapeForm::kSphere, kBall_m, 0.0, {-l1, 0.0, 3.0 - l2}, m2)});
-    spec.joints = {hinge("a", "", "first", -Eigen::Vector3d::UnitY(), {0.0, 0.0, 3.0}),
-                   hinge("b", "first", "second", -Eigen::Vector3d::UnitY(), {-l1, 0.0, 3.0})};
-    spec.solver.timestep_s = i == 0 ? 0.004 : 0.0005;
-    Running running(spec);
-    running.run(2.0);
-    const Eigen::Vector3d upper = running.world.position(running.body("first"));
-    const Eigen::Vector3d lower = running.world.position(running.body("second"));
-    const Eigen::Vector3d at_upper(-l1 * std::sin(expected[0]), 0.0,
-                                   3.0 - l1 * std::cos(expected[0]));
-    const Eigen::Vector3d at_lower =
-        at_upper + Eigen::Vector3d(-l2 * std::sin(expected[1]), 0.0, -l2 * std::cos(expected[1]));
-    error[i] = (upper - at_upper).norm() + (lower - at_lower).norm();
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    const double m1 = 1.0, m2 = 0.7, l1 = 0.6, l2 = 0.5, g = kGravity_m_s2;
+    const double j1 = ball_inertia(m1), j2 = ball_inertia(m2);
+    // Angles from straight down, as Lagrange has them.
+    const auto change = [&](const Angles& at) {
+      const double d = at[0] - at[1];
+      const double a = (m1 + m2) * l1 * l1 + j1, b = m2 * l1 * l2 * std::cos(d),
+                   c = m2 * l2 * l2 + j2;
+      const double e =
+          -m2 * l1 * l2 * std::sin(d) * at[3] * at[3] - (m1 + m2) * g * l1 * std::sin(at[0]);
+      const double f = m2 * l1 * l2 * std::sin(d) * at[2] * at[2] - m2 * g * l2 * std::sin(at[1]);
+      const double determinant = a * c - b * b;
+      return Angles{at[2], at[3], (e * c - b * f) / determinant, (a * f - b * e) / determinant};
+    };
+    const double quarter = 0.5 * std::numbers::pi;
+    const Angles expected = solved({quarter, 0.0, 0.0, 0.0}, 2.0, change);
+    std::array<double, 2> error{};
+    for (std::size_t i = 0; i < error.size(); ++i) {
+      WorldSpec spec = world_of(
+          {round_body("first", ShapeForm::kSphere, kBall_m, 0.0, {-l1, 0.0, 3.0}, m1),
+           round_body("second", ShapeForm::kSphere, kBall_m, 0.0, {-l1, 0.0, 3.0 - l2}, m2)});
+      spec.joints = {hinge("a", "", "first", -Eigen::Vector3d::UnitY(), {0.0, 0.0, 3.0}),
+                     hinge("b", "first", "second", -Eigen::Vector3d::UnitY(), {-l1, 0.0, 3.0})};
+      spec.solver.timestep_s = i == 0 ? 0.004 : 0.0005;
+      Running running(engine, spec);
+      running.run(2.0);
+      const Eigen::Vector3d upper = running.world.position(running.body("first"));
+      const Eigen::Vector3d lower = running.world.position(running.body("second"));
+      const Eigen::Vector3d at_upper(-l1 * std::sin(expected[0]), 0.0,
+                                     3.0 - l1 * std::cos(expected[0]));
+      const Eigen::Vector3d at_lower =
+          at_upper + Eigen::Vector3d(-l2 * std::sin(expected[1]), 0.0, -l2 * std::cos(expected[1]));
+      error[i] = (upper - at_upper).norm() + (lower - at_lower).norm();
+    }
+    CAPTURE(error[0]);
+    CAPTURE(error[1]);
+    CHECK(error[1] < 0.005);
+    CHECK(error[1] < 0.5 * error[0]);
   }
-  CAPTURE(error[0]);
-  CAPTURE(error[1]);
-  CHECK(error[1] < 0.005);
-  CHECK(error[1] < 0.5 * error[0]);
 }
 
 WorldSpec door() {
@@ -177,86 +189,101 @@ WorldSpec door() {
 constexpr double kDoorInertia = 20.0 * (0.8 * 0.8 + 0.04 * 0.04) / 12.0 + 20.0 * 0.4 * 0.4;
 
 TEST_CASE("a door turns the right way, stops at its limits and stays there") {
-  WorldSpec spec = door();
-  spec.joints.front().low_rad = -0.5;
-  spec.joints.front().high_rad = 1.5;
-  Running running(spec);
-  const HingeId id = *running.world.layout().find_hinge("hinge");
-  running.world.set_hinge_motor(id, 1.0, 50.0);
-  running.run(1.0);
-  CHECK(running.angle("hinge") == doctest::Approx(1.0).epsilon(0.05));
-  CHECK(running.world.position(running.body("door")).y() > 0.3);  // by the right hand
-  running.run(2.0);
-  CHECK(running.angle("hinge") == doctest::Approx(1.5).epsilon(0.01));
-  running.world.set_hinge_motor(id, -1.0, 50.0);
-  running.run(4.0);
-  CHECK(running.angle("hinge") == doctest::Approx(-0.5).epsilon(0.01));
-  CHECK(running.world.position(running.body("door")).z() == doctest::Approx(1.02).epsilon(1e-3));
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    WorldSpec spec = door();
+    spec.joints.front().low_rad = -0.5;
+    spec.joints.front().high_rad = 1.5;
+    Running running(engine, spec);
+    const HingeId id = *running.world.layout().find_hinge("hinge");
+    running.world.set_hinge_motor(id, 1.0, 50.0);
+    running.run(1.0);
+    CHECK(running.angle("hinge") == doctest::Approx(1.0).epsilon(0.05));
+    CHECK(running.world.position(running.body("door")).y() > 0.3);  // by the right hand
+    running.run(2.0);
+    CHECK(running.angle("hinge") == doctest::Approx(1.5).epsilon(0.01));
+    running.world.set_hinge_motor(id, -1.0, 50.0);
+    running.run(4.0);
+    CHECK(running.angle("hinge") == doctest::Approx(-0.5).epsilon(0.01));
+    CHECK(running.world.position(running.body("door")).z() == doctest::Approx(1.02).epsilon(1e-3));
+  }
 }
 
 TEST_CASE("dry friction at a stop holds and does not push") {
-  for (const bool at_upper : {true, false}) {
-    WorldSpec spec = door();
-    spec.joints.front().low_rad = at_upper ? -1.0 : 0.0;
-    spec.joints.front().high_rad = at_upper ? 0.0 : 1.0;
-    spec.joints.front().max_torque_nm = 40.0;
-    Running running(spec);
-    running.run(1.0);
-    CHECK(std::abs(running.angle("hinge")) < 1e-4);
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    for (const bool at_upper : {true, false}) {
+      WorldSpec spec = door();
+      spec.joints.front().low_rad = at_upper ? -1.0 : 0.0;
+      spec.joints.front().high_rad = at_upper ? 0.0 : 1.0;
+      spec.joints.front().max_torque_nm = 40.0;
+      Running running(engine, spec);
+      running.run(1.0);
+      CHECK(std::abs(running.angle("hinge")) < 1e-4);
+    }
   }
 }
 
 TEST_CASE("damping takes a door's speed by an exponential, dry friction in a straight line") {
-  const double damping = 4.0, friction = 3.0, time_s = 0.6;
-  for (const bool damped : {true, false}) {
-    CAPTURE(damped);
-    WorldSpec spec = door();
-    if (damped) spec.joints.front().damping_nm_s = damping;
-    Running running(spec);
-    const HingeId id = *running.world.layout().find_hinge("hinge");
-    running.world.set_hinge_motor(id, 1.0, 1e4);
-    running.run(0.3);
-    const double before = running.rate("hinge");
-    CHECK(before == doctest::Approx(1.0).epsilon(0.01));
-    running.world.set_hinge_motor(id, 0.0, damped ? 0.0 : friction);
-    running.run(time_s);
-    const double expected = damped ? before * std::exp(-damping * time_s / kDoorInertia)
-                                   : before - friction * time_s / kDoorInertia;
-    CHECK(running.rate("hinge") == doctest::Approx(expected).epsilon(0.005));
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    const double damping = 4.0, friction = 3.0, time_s = 0.6;
+    for (const bool damped : {true, false}) {
+      CAPTURE(damped);
+      WorldSpec spec = door();
+      if (damped) spec.joints.front().damping_nm_s = damping;
+      Running running(engine, spec);
+      const HingeId id = *running.world.layout().find_hinge("hinge");
+      running.world.set_hinge_motor(id, 1.0, 1e4);
+      running.run(0.3);
+      const double before = running.rate("hinge");
+      CHECK(before == doctest::Approx(1.0).epsilon(0.01));
+      running.world.set_hinge_motor(id, 0.0, damped ? 0.0 : friction);
+      running.run(time_s);
+      const double expected = damped ? before * std::exp(-damping * time_s / kDoorInertia)
+                                     : before - friction * time_s / kDoorInertia;
+      CHECK(running.rate("hinge") == doctest::Approx(expected).epsilon(0.005));
+    }
   }
 }
 
 TEST_CASE("a damper of any strength slows a slider and does not shake it") {
-  const double mass_kg = 2.0;
-  for (const double damping : {5.0, 1e6}) {
-    WorldSpec spec = world_of({box_body("weight", {0.1, 0.1, 0.1}, {0.0, 0.0, 50.0}, mass_kg)});
-    JointSpec rail;
-    rail.name = "rail";
-    rail.child = "weight";
-    rail.axis_W = Eigen::Vector3d::UnitZ();
-    rail.damping_n_s_m = damping;
-    spec.joints = {rail};
-    Running running(spec);
-    running.run(1.0);
-    const double fall_s = mass_kg / damping, end = kGravity_m_s2 * fall_s;
-    const double expected = -end * (1.0 - std::exp(-1.0 / fall_s));
-    const SliderId id = *running.world.layout().find_slider("rail");
-    CHECK(running.world.slider_rate_m_s(id) == doctest::Approx(expected).epsilon(0.01));
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    const double mass_kg = 2.0;
+    for (const double damping : {5.0, 1e6}) {
+      WorldSpec spec = world_of({box_body("weight", {0.1, 0.1, 0.1}, {0.0, 0.0, 50.0}, mass_kg)});
+      JointSpec rail;
+      rail.name = "rail";
+      rail.child = "weight";
+      rail.axis_W = Eigen::Vector3d::UnitZ();
+      rail.damping_n_s_m = damping;
+      spec.joints = {rail};
+      Running running(engine, spec);
+      running.run(1.0);
+      const double fall_s = mass_kg / damping, end = kGravity_m_s2 * fall_s;
+      const double expected = -end * (1.0 - std::exp(-1.0 / fall_s));
+      const SliderId id = *running.world.layout().find_slider("rail");
+      CHECK(running.world.slider_rate_m_s(id) == doctest::Approx(expected).epsilon(0.01));
+    }
   }
 }
 
 TEST_CASE("a sphere falls as far as free fall says") {
-  WorldSpec spec =
-      world_of({round_body("ball", ShapeForm::kSphere, 0.05, 0.0, {0.0, 0.0, 20.0}, 0.2)});
-  spec.solver.timestep_s = 0.0005;
-  Running running(spec);
-  running.run(1.5);
-  CHECK(running.world.position(running.body("ball")).z() ==
-        doctest::Approx(20.0 - 0.5 * kGravity_m_s2 * 1.5 * 1.5).epsilon(0.001));
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    WorldSpec spec =
+        world_of({round_body("ball", ShapeForm::kSphere, 0.05, 0.0, {0.0, 0.0, 20.0}, 0.2)});
+    spec.solver.timestep_s = 0.0005;
+    Running running(engine, spec);
+    running.run(1.5);
+    CHECK(running.world.position(running.body("ball")).z() ==
+          doctest::Approx(20.0 - 0.5 * kGravity_m_s2 * 1.5 * 1.5).epsilon(0.001));
+  }
 }
 
 /// How far something has come down a slope of 0.3 rad after a second from rest.
-double way_down(ShapeForm form, double friction) {
+double way_down(EngineKind engine, ShapeForm form, double friction) {
   const double slope = 0.3, radius_m = 0.1;
   BodySpec ramp = box_body("ramp", {10.0, 4.0, 0.2}, {0.0, 0.0, 3.0});
   ramp.shapes.front().pitch_rad = slope;  // about y: down along +x
@@ -269,77 +296,93 @@ double way_down(ShapeForm form, double friction) {
   WorldSpec spec = world_of({ramp, thing});
   spec.friction.fallback = friction;
   spec.solver.timestep_s = 0.001;
-  Running running(spec);
+  Running running(engine, spec);
   running.run(1.0);
   return (running.world.position(running.body("thing")) - p).norm();
 }
 
 TEST_CASE("what rolls or slides down a slope is as fast as its inertia and friction let it") {
-  const double g_along = kGravity_m_s2 * std::sin(0.3), g_across = kGravity_m_s2 * std::cos(0.3);
-  CHECK(way_down(ShapeForm::kSphere, 0.8) ==
-        doctest::Approx(0.5 * g_along * 5.0 / 7.0).epsilon(0.02));
-  CHECK(way_down(ShapeForm::kCylinder, 0.8) ==
-        doctest::Approx(0.5 * g_along * 2.0 / 3.0).epsilon(0.02));
-  CHECK(way_down(ShapeForm::kBox, 0.1) ==
-        doctest::Approx(0.5 * (g_along - 0.1 * g_across)).epsilon(0.02));
-  CHECK(way_down(ShapeForm::kBox, 0.5) < 0.005);
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    const double g_along = kGravity_m_s2 * std::sin(0.3), g_across = kGravity_m_s2 * std::cos(0.3);
+    CHECK(way_down(engine, ShapeForm::kSphere, 0.8) ==
+          doctest::Approx(0.5 * g_along * 5.0 / 7.0).epsilon(0.02));
+    CHECK(way_down(engine, ShapeForm::kCylinder, 0.8) ==
+          doctest::Approx(0.5 * g_along * 2.0 / 3.0).epsilon(0.02));
+    CHECK(way_down(engine, ShapeForm::kBox, 0.1) ==
+          doctest::Approx(0.5 * (g_along - 0.1 * g_across)).epsilon(0.02));
+    CHECK(way_down(engine, ShapeForm::kBox, 0.5) < 0.005);
+  }
 }
 
 TEST_CASE("what stands or lies stays where it is for ten seconds") {
-  BodySpec lying = round_body("capsule", ShapeForm::kCapsule, 0.05, 0.3, {1.0, 0.0, 0.05}, 0.4);
-  lying.shapes.front().roll_rad = 0.5 * std::numbers::pi;
-  WorldSpec spec = world_of(
-      {round_body("ball", ShapeForm::kSphere, 0.1, 0.0, {0.0, 0.0, 0.1}, 1.0),
-       round_body("can", ShapeForm::kCylinder, 0.1, 0.3, {0.0, 1.0, 0.15}, 1.0),
-       round_body("upper", ShapeForm::kCylinder, 0.05, 0.1, {0.0, 1.0, 0.35}, 0.3), lying});
-  Running running(spec);
-  running.run(10.0);
-  for (const BodySpec& body : spec.bodies) {
-    CAPTURE(body.name);
-    CHECK((running.world.position(running.body(body.name.c_str())) - body.p_WB).norm() < 0.001);
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    BodySpec lying = round_body("capsule", ShapeForm::kCapsule, 0.05, 0.3, {1.0, 0.0, 0.05}, 0.4);
+    lying.shapes.front().roll_rad = 0.5 * std::numbers::pi;
+    WorldSpec spec = world_of(
+        {round_body("ball", ShapeForm::kSphere, 0.1, 0.0, {0.0, 0.0, 0.1}, 1.0),
+         round_body("can", ShapeForm::kCylinder, 0.1, 0.3, {0.0, 1.0, 0.15}, 1.0),
+         round_body("upper", ShapeForm::kCylinder, 0.05, 0.1, {0.0, 1.0, 0.35}, 0.3), lying});
+    Running running(engine, spec);
+    running.run(10.0);
+    for (const BodySpec& body : spec.bodies) {
+      CAPTURE(body.name);
+      CHECK((running.world.position(running.body(body.name.c_str())) - body.p_WB).norm() < 0.001);
+    }
   }
 }
 
 TEST_CASE("bodies kept apart pass through each other, others do not") {
-  for (const bool apart : {true, false}) {
-    WorldSpec spec =
-        world_of({box_body("shelf", {1.0, 1.0, 0.1}, {0.0, 0.0, 1.0}),
-                  round_body("ball", ShapeForm::kSphere, 0.1, 0.0, {0.0, 0.0, 1.5}, 1.0)});
-    if (apart) spec.bodies[0].apart = spec.bodies[1].apart = "model";
-    Running running(spec);
-    running.run(2.0);
-    const double expected = apart ? 0.1 : 1.15;
-    CHECK(running.world.position(running.body("ball")).z() ==
-          doctest::Approx(expected).epsilon(0.01));
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    for (const bool apart : {true, false}) {
+      WorldSpec spec =
+          world_of({box_body("shelf", {1.0, 1.0, 0.1}, {0.0, 0.0, 1.0}),
+                    round_body("ball", ShapeForm::kSphere, 0.1, 0.0, {0.0, 0.0, 1.5}, 1.0)});
+      if (apart) spec.bodies[0].apart = spec.bodies[1].apart = "model";
+      Running running(engine, spec);
+      running.run(2.0);
+      const double expected = apart ? 0.1 : 1.15;
+      CHECK(running.world.position(running.body("ball")).z() ==
+            doctest::Approx(expected).epsilon(0.01));
+    }
   }
 }
 
 TEST_CASE("bounds hold a leaning shape closely, and rays meet its surface") {
-  BodySpec body = round_body("can", ShapeForm::kCylinder, 0.1, 1.0, {0.0, 0.0, 2.0}, 0.0);
-  body.shapes.front().pitch_rad = 0.5 * std::numbers::pi;
-  const OdeWorld world(world_of({body}));
-  const Bounds bounds = world.bounds(*world.layout().find_body("can"));
-  CHECK((bounds.high - Eigen::Vector3d(0.5, 0.1, 2.1)).norm() < 1e-9);
-  const auto hit =
-      world.ray_meets({0.0, -1.0, 2.0}, {0.0, 1.0, 2.0}, *world.layout().find_body("can"));
-  REQUIRE(hit.has_value());
-  CHECK(*hit == doctest::Approx(0.9));
-  const Probe beside{
-      {0.2, 0.2, 0.2}, {0.0, 0.19, 2.09}, Eigen::Matrix3d::Identity(), ShapeForm::kSphere};
-  const BodyMask none(1, false);
-  CHECK_FALSE(world.find_obstacle(beside, none, 0.0).has_value());  // boxes round both would meet
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    BodySpec body = round_body("can", ShapeForm::kCylinder, 0.1, 1.0, {0.0, 0.0, 2.0}, 0.0);
+    body.shapes.front().pitch_rad = 0.5 * std::numbers::pi;
+    const auto owned = make_world(stepped_by(engine, world_of({body})));
+    const PhysicsWorld& world = *owned;
+    const Bounds bounds = world.bounds(*world.layout().find_body("can"));
+    CHECK((bounds.high - Eigen::Vector3d(0.5, 0.1, 2.1)).norm() < 1e-9);
+    const auto hit =
+        world.ray_meets({0.0, -1.0, 2.0}, {0.0, 1.0, 2.0}, *world.layout().find_body("can"));
+    REQUIRE(hit.has_value());
+    CHECK(*hit == doctest::Approx(0.9));
+    const Probe beside{
+        {0.2, 0.2, 0.2}, {0.0, 0.19, 2.09}, Eigen::Matrix3d::Identity(), ShapeForm::kSphere};
+    const BodyMask none(1, false);
+    CHECK_FALSE(world.find_obstacle(beside, none, 0.0).has_value());  // boxes round both would meet
+  }
 }
 
 TEST_CASE("a hinge repeats to the bit, in this world and in a fresh one") {
-  const WorldSpec spec = pendulum(0.002);
-  Running one(spec), other(spec);
-  one.run(1.0);
-  other.run(1.0);
-  CHECK(one.world.digest() == other.world.digest());
-  const auto first = one.world.digest();
-  REQUIRE_FALSE(one.world.reset(default_placements(one.world.layout()), 1).has_value());
-  one.run(1.0);
-  CHECK(one.world.digest() == first);
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    const WorldSpec spec = pendulum(0.002);
+    Running one(engine, spec), other(engine, spec);
+    one.run(1.0);
+    other.run(1.0);
+    CHECK(one.world.digest() == other.world.digest());
+    const auto first = one.world.digest();
+    REQUIRE_FALSE(one.world.reset(default_placements(one.world.layout()), 1).has_value());
+    one.run(1.0);
+    CHECK(one.world.digest() == first);
+  }
 }
 
 TEST_CASE("a hinge or an inertia that cannot be is refused by its key") {

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/engine/physics_world.h"
+
+namespace parallax::harness {
+
+/// What a shape is to the bodies that touch it. kPart: of the robot.
+enum class ShapeRole : std::uint8_t { kWorld, kFree, kNearPad, kFarPad, kPart };
+
+/// What contacts ask of a body, or of the floor.
+struct ContactSide {
+  std::optional<BodyId> body;  // none: the floor
+  std::uint32_t assembly = 0, apart = 0;
+  std::uint32_t material = 0;
+  ShapeRole role = ShapeRole::kWorld;
+  std::uint32_t gripper = 0;  // of a pad
+};
+
+/// Who collides with whom, how rough a pair is, and what a touch says; the same for every engine.
+class ContactRules {
+ public:
+  ContactRules(const WorldSpec& spec, const WorldLayout& layout);
+
+  const ContactSide& floor() const { return floor_; }
+  const ContactSide& of(BodyId id) const { return sides_[id.index()]; }
+  double friction(const ContactSide& a, const ContactSide& b) const {
+    return friction_[a.material * material_count_ + b.material];
+  }
+  static bool never_collide(const ContactSide& a, const ContactSide& b) {
+    return (a.assembly != 0 && a.assembly == b.assembly) || (a.apart != 0 && a.apart == b.apart);
+  }
+  /// Of two that touch.
+  static void note(const ContactSide& a, const ContactSide& b, std::vector<Touch>& touches);
+
+ private:
+  ContactSide floor_;
+  std::vector<ContactSide> sides_;  // by BodyId
+  std::uint32_t material_count_ = 0;
+  std::vector<double> friction_;  // (material_count x material_count)
+};
+
+}  // namespace parallax::harness

@@ -1,0 +1,89 @@
+#include <mujoco/mujoco.h>
+
+#include <array>
+#include <cstring>
+#include <mutex>
+
+#include "harness/engine/mujoco_engine.h"
+
+// The world is handed over as text in the engine's own language, the only way in that its library
+// has; the text never is a file.
+
+namespace parallax::harness {
+namespace {
+
+/// Reads a text; the reader of the library keeps a copy of its own and is not made for threads.
+mjModel* read_model(const std::string& text) {
+  static std::mutex mutex;
+  const std::lock_guard<std::mutex> lock(mutex);
+  const auto files = std::make_unique<mjVFS>();
+  mj_defaultVFS(files.get());
+  constexpr const char* kFile = "world.xml";
+  std::array<char, 1000> why{};
+  mjModel* model = nullptr;
+  if (mj_makeEmptyFileVFS(files.get(), kFile, static_cast<int>(text.size())) == 0) {
+    std::memcpy(files->filedata[files->nfile - 1], text.data(), text.size());
+    model = mj_loadXML(kFile, files.get(), why.data(), static_cast<int>(why.size()));
+  }
+  mj_deleteVFS(files.get());
+  mj_freeLastXML();
+  if (model == nullptr) throw EngineFault(std::string("MuJoCo refuses the world: ") + why.data());
+  return model;
+}
+
+int number_of(const mjModel& model, mjtObj kind, const std::string& name) {
+  const int number = mj_name2id(&model, kind, name.c_str());
+  if (number < 0) throw EngineFault("MuJoCo lost `" + name + "`");
+  return number;
+}
+
+void find_joints(MujocoWorld::Engine& engine) {
+  const mjModel& model = *engine.model;
+  engine.sliders.resize(engine.layout.sliders.size());
+  engine.hinges.resize(engine.layout.hinges.size());
+  engine.gantries.resize(engine.layout.gantries.size());
+  for (std::size_t i = 0; i < engine.tree.links.size(); ++i) {
+    const LinkId id = engine.tree.links.id_at(i);
+    const TreeLink& link = engine.tree.links[id];
+    engine.bodies.push_back(number_of(model, mjOBJ_BODY, link_name(i)));
+    const int joint = number_of(model, mjOBJ_JOINT, joint_name(i, 0));
+    engine.joints.push_back({model.jnt_qposadr[joint], model.jnt_dofadr[joint]});
+    engine.masses_kg.push_back(link.mass_kg);
+    engine.moments_kg_m2.emplace_back(
+        Eigen::Map<const Eigen::Vector3d>(model.body_inertia + 3 * engine.bodies.back()));
+    if (link.joint == LinkJoint::kSlider) engine.sliders[link.joint_index] = id;
+    if (link.joint == LinkJoint::kHinge) engine.hinges[link.joint_index] = id;
+    if (link.joint == LinkJoint::kGantry) engine.gantries[link.joint_index] = id;
+  }
+  engine.targets.assign(static_cast<std::size_t>(model.nv), 0.0);
+}
+
+void find_geoms(MujocoWorld::Engine& engine, const std::vector<BodyId>& bodies) {
+  const mjModel& model = *engine.model;
+  engine.sides.assign(static_cast<std::size_t>(model.ngeom), nullptr);
+  const auto side_at = [&](const std::string& name) -> const ContactSide*& {
+    return engine.sides[static_cast<std::size_t>(number_of(model, mjOBJ_GEOM, name))];
+  };
+  side_at(kFloorName) = &engine.rules.floor();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    side_at(geom_name(i + 1)) = &engine.rules.of(bodies[i]);
+  }
+  for (const ShapeForm form :
+       {ShapeForm::kBox, ShapeForm::kSphere, ShapeForm::kCylinder, ShapeForm::kCapsule}) {
+    engine.probes.push_back(number_of(model, mjOBJ_GEOM, probe_name(form)));
+  }
+}
+
+}  // namespace
+
+void build_engine(MujocoWorld::Engine& engine, const EngineInput& input) {
+  const WorldText world = write_mjcf(input);
+  engine.model.reset(read_model(world.text));
+  engine.data.reset(mj_makeData(engine.model.get()));
+  if (engine.data == nullptr) throw EngineFault("MuJoCo has no memory for the world");
+  engine.touches.resize(engine.layout.bodies.size());
+  find_joints(engine);
+  find_geoms(engine, world.geom_bodies);
+}
+
+}  // namespace parallax::harness

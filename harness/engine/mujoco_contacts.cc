@@ -1,0 +1,222 @@
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "harness/engine/mujoco_engine.h"
+
+namespace parallax::harness {
+namespace {
+
+using Engine = MujocoWorld::Engine;
+
+const ContactSide& side_of(const Engine& engine, int geom) {
+  return *engine.sides[static_cast<std::size_t>(geom)];
+}
+
+Eigen::Vector3d place_of(const mjData& data, int geom) {
+  return Eigen::Map<const Eigen::Vector3d>(data.geom_xpos + 3 * geom);
+}
+
+bool is_floor(const mjModel& model, int geom) { return model.geom_type[geom] == mjGEOM_PLANE; }
+
+/// Can the sphere round the probe meet that round the geom?
+bool is_near(const mjModel& model, const mjData& data, int geom, const Eigen::Vector3d& p_W,
+             double radius_m) {
+  if (is_floor(model, geom)) return p_W.z() <= radius_m;
+  const double reach_m = radius_m + model.geom_rbound[geom];
+  return (place_of(data, geom) - p_W).squaredNorm() <= reach_m * reach_m;
+}
+
+/// The probe's shape, put where it is asked for. It collides with nothing by itself.
+int put_probe(Engine& engine, const Probe& probe) {
+  mjModel& model = *engine.model;
+  mjData& data = *engine.data;
+  const int geom = engine.probes[static_cast<std::size_t>(probe.form)];
+  Eigen::Map<Eigen::Vector3d>(model.geom_size + 3 * geom) = engine_size_m(probe.form, probe.size_m);
+  Eigen::Map<Eigen::Vector3d>(data.geom_xpos + 3 * geom) = probe.p_WS;
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data.geom_xmat + 9 * geom) = probe.R_WS;
+  model.geom_rbound[geom] = 0.5 * probe.size_m.norm();
+  return geom;
+}
+
+/// The engine gives half the depth where a corner or an edge of a box is in a face of another one,
+/// and all of it where two edges cross (2.2.2; tests hold both against geometry). It is a face if
+/// the normal is that of one.
+double distance_m(const Engine& engine, const mjContact& contact, int a, int b) {
+  constexpr double kSameDirection = 1.0 - 1e-9;
+  const mjModel& model = *engine.model;
+  if (model.geom_type[a] != mjGEOM_BOX || model.geom_type[b] != mjGEOM_BOX) return contact.dist;
+  const Eigen::Map<const Eigen::Vector3d> normal(contact.frame);
+  for (const int geom : {a, b}) {
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R_WG(
+        engine.data->geom_xmat + 9 * geom);
+    const Eigen::Vector3d along = (R_WG.transpose() * normal).cwiseAbs();
+    if (along.maxCoeff() >= kSameDirection) return 2.0 * contact.dist;
+  }
+  return contact.dist;
+}
+
+/// How deep two geoms overlap; none where they do not touch.
+std::optional<double> depth_of(const Engine& engine, int a, int b) {
+  const mjModel& model = *engine.model;
+  if (model.geom_type[a] > model.geom_type[b]) std::swap(a, b);
+  const mjfCollision collide = mjCOLLISIONFUNC[model.geom_type[a]][model.geom_type[b]];
+  if (collide == nullptr) return std::nullopt;
+  std::array<mjContact, mjMAXCONPAIR> contacts;
+  const int count = collide(&model, engine.data.get(), contacts.data(), a, b, 0.0);
+  std::optional<double> deepest;
+  for (int i = 0; i < count; ++i) {
+    const double depth = -distance_m(engine, contacts[static_cast<std::size_t>(i)], a, b);
+    if (depth >= 0.0 && (!deepest || depth > *deepest)) deepest = depth;
+  }
+  return deepest;
+}
+
+struct Found {
+  int geom = -1;
+  double depth_m = 0.0;
+};
+
+/// The deepest overlap with a geom that `counts` takes.
+template <typename Counts>
+std::optional<Found> probe_all(Engine& engine, const Probe& probe, const Counts& counts) {
+  const mjModel& model = *engine.model;
+  const int own = put_probe(engine, probe);
+  const double radius_m = model.geom_rbound[own];
+  std::optional<Found> found;
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    const ContactSide* side = engine.sides[static_cast<std::size_t>(geom)];
+    if (side == nullptr || !counts(*side)) continue;
+    if (!is_near(model, *engine.data, geom, probe.p_WS, radius_m)) continue;
+    const auto depth = depth_of(engine, own, geom);
+    if (depth && (!found || *depth > found->depth_m)) found = Found{geom, *depth};
+  }
+  return found;
+}
+
+/// Along a ray of unit direction; none where the geom is not met.
+std::optional<double> ray_meets_geom(const Engine& engine, int geom, const Eigen::Vector3d& from,
+                                     const Eigen::Vector3d& direction) {
+  const mjModel& model = *engine.model;
+  const mjData& data = *engine.data;
+  if (is_floor(model, geom)) {
+    if (direction.z() == 0.0) return std::nullopt;
+    const double way_m = -from.z() / direction.z();
+    return way_m >= 0.0 ? std::optional(way_m) : std::nullopt;
+  }
+  const Eigen::Vector3d d = place_of(data, geom) - from;
+  const double radius_m = model.geom_rbound[geom];
+  if (d.squaredNorm() - std::pow(d.dot(direction), 2) > radius_m * radius_m) return std::nullopt;
+  const double way_m =
+      mju_rayGeom(data.geom_xpos + 3 * geom, data.geom_xmat + 9 * geom, model.geom_size + 3 * geom,
+                  from.data(), direction.data(), model.geom_type[geom]);
+  return way_m >= 0.0 ? std::optional(way_m) : std::nullopt;
+}
+
+/// The first geom that `counts` takes on the way.
+template <typename Counts>
+std::optional<Found> cast(const Engine& engine, const Eigen::Vector3d& from,
+                          const Eigen::Vector3d& to, const Counts& counts) {
+  const double length_m = (to - from).norm();
+  if (length_m == 0.0) return std::nullopt;
+  const Eigen::Vector3d direction = (to - from) / length_m;
+  std::optional<Found> found;
+  for (int geom = 0; geom < engine.model->ngeom; ++geom) {
+    const ContactSide* side = engine.sides[static_cast<std::size_t>(geom)];
+    if (side == nullptr || !counts(*side)) continue;
+    const auto way_m = ray_meets_geom(engine, geom, from, direction);
+    if (!way_m || *way_m > length_m || (found && *way_m >= found->depth_m)) continue;
+    found = Found{geom, *way_m};
+  }
+  return found;
+}
+
+auto all_but(const BodyMask& ignored) {
+  return [&ignored](const ContactSide& side) { return !side.body || !ignored[side.body->index()]; };
+}
+
+auto only(BodyId id) {
+  return [id](const ContactSide& side) { return side.body == id; };
+}
+
+}  // namespace
+
+std::string name_of(const Engine& engine, const ContactSide& side) {
+  return side.body ? engine.layout.bodies[*side.body].name : "floor";
+}
+
+void find_contacts(Engine& engine) {
+  constexpr double kLeastFriction = 1e-5;  // of the engine
+  mjData& data = *engine.data;
+  mj_collision(engine.model.get(), &data);
+  const double erp = engine.solver.contact_erp.value_or(engine.solver.erp);
+  int kept = 0;
+  for (int i = 0; i < data.ncon; ++i) {
+    mjContact& contact = data.contact[i];
+    const ContactSide& a = side_of(engine, contact.geom1);
+    const ContactSide& b = side_of(engine, contact.geom2);
+    if (ContactRules::never_collide(a, b)) continue;
+    const double friction = engine.rules.friction(a, b);
+    contact.dist = distance_m(engine, contact, contact.geom1, contact.geom2);
+    contact.dim = friction > 0.0 ? 3 : 1;
+    std::fill_n(contact.friction, 5, std::max(friction, kLeastFriction));
+    contact.solref[0] = engine.solver.timestep_s / erp;
+    contact.solref[1] = 1.0;
+    if (kept != i) data.contact[kept] = contact;
+    ++kept;
+  }
+  data.ncon = kept;
+}
+
+void note_touches(Engine& engine) {
+  std::fill(engine.touches.begin(), engine.touches.end(), Touch{});
+  for (int i = 0; i < engine.data->ncon; ++i) {
+    const mjContact& contact = engine.data->contact[i];
+    ContactRules::note(side_of(engine, contact.geom1), side_of(engine, contact.geom2),
+                       engine.touches);
+  }
+}
+
+std::optional<Overlap> deepest_contact(const Engine& engine) {
+  const mjContact* deepest = nullptr;
+  for (int i = 0; i < engine.data->ncon; ++i) {
+    const mjContact& contact = engine.data->contact[i];
+    if (deepest == nullptr || contact.dist < deepest->dist) deepest = &contact;
+  }
+  if (deepest == nullptr) return std::nullopt;
+  Overlap overlap{name_of(engine, side_of(engine, deepest->geom1)),
+                  name_of(engine, side_of(engine, deepest->geom2)), -deepest->dist};
+  if (overlap.second < overlap.first) std::swap(overlap.first, overlap.second);
+  return overlap;
+}
+
+std::optional<Overlap> MujocoWorld::find_obstacle(const Probe& probe, const BodyMask& ignored,
+                                                  double tolerance_m) const {
+  const auto found = probe_all(*engine_, probe, all_but(ignored));
+  if (!found || found->depth_m <= tolerance_m) return std::nullopt;
+  return Overlap{name_of(*engine_, side_of(*engine_, found->geom)), {}, found->depth_m};
+}
+
+bool MujocoWorld::overlaps(const Probe& probe, BodyId id) const {
+  return probe_all(*engine_, probe, only(id)).has_value();
+}
+
+std::optional<RayHit> MujocoWorld::cast_ray(const Eigen::Vector3d& from_W,
+                                            const Eigen::Vector3d& to_W,
+                                            const BodyMask& ignored) const {
+  const auto found = cast(*engine_, from_W, to_W, all_but(ignored));
+  if (!found) return std::nullopt;
+  return RayHit{name_of(*engine_, side_of(*engine_, found->geom)), found->depth_m};
+}
+
+std::optional<double> MujocoWorld::ray_meets(const Eigen::Vector3d& from_W,
+                                             const Eigen::Vector3d& to_W, BodyId id) const {
+  const auto found = cast(*engine_, from_W, to_W, only(id));
+  if (!found) return std::nullopt;
+  return found->depth_m;
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "harness/engine/mujoco_module.h"
+#include "harness/engine/mujoco_world.h"
+
+// The engine's own types, as its headers name them; only mujoco_*.cc sees more of them.
+struct mjModel_;
+struct mjData_;
+
+namespace parallax::harness {
+
+/// What the engine gave up on, in its words.
+class EngineFault : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct ModelDeleter {
+  void operator()(mjModel_* model) const;
+};
+struct DataDeleter {
+  void operator()(mjData_* data) const;
+};
+
+/// The degrees of freedom of a joint: of a gantry its three slides and its turn.
+struct JointPlace {
+  int q = 0, v = 0;  // first place in the positions, in the velocities
+};
+
+/// Names of what the engine is told of, by index.
+std::string link_name(std::size_t link);
+std::string joint_name(std::size_t link, int part);
+std::string geom_name(std::size_t geom);
+inline constexpr const char* kFloorName = "floor";
+std::string probe_name(ShapeForm form);
+
+/// The world in the engine's own language, MJCF, and its shapes by number; number 0 is the floor.
+struct WorldText {
+  std::string text;
+  std::vector<BodyId> geom_bodies;  // by geom_name, from 1
+};
+WorldText write_mjcf(const EngineInput& input);
+
+/// Half sides, or radius and half the length, as the engine wants them.
+Eigen::Vector3d engine_size_m(ShapeForm form, const Eigen::Vector3d& size_m);
+
+/// Everything behind MujocoWorld.
+struct MujocoWorld::Engine {
+  WorldLayout layout;
+  SolverSpec solver;
+  ContactRules rules;
+  LinkTree tree;
+  std::unique_ptr<mjModel_, ModelDeleter> model;
+  std::unique_ptr<mjData_, DataDeleter> data;
+  std::vector<int> bodies;                        // by LinkId: the engine's number
+  std::vector<JointPlace> joints;                 // by LinkId
+  std::vector<LinkId> sliders, hinges, gantries;  // by SliderId, ...: what they move
+  std::vector<const ContactSide*> sides;          // by the engine's number of a geom; null: probe
+  std::vector<int> probes;                        // by ShapeForm
+  std::vector<double> targets;                    // by degree of freedom: the motor's velocity
+  std::vector<double> masses_kg;                  // by LinkId
+  std::vector<Eigen::Vector3d> moments_kg_m2;     // by LinkId: principal, of the specified mass
+  std::vector<Touch> touches;                     // by BodyId
+  std::uint64_t digest = 0;
+  bool is_broken = false;  // the engine gave up: lost until the next reset
+  bool measure_times = false;
+  StepStatistics statistics;
+
+  explicit Engine(const EngineInput& input)
+      : layout(input.layout), solver(input.spec.solver), rules(input.rules), tree(input.tree) {}
+};
+
+/// Reads the world and finds everything in it again. EngineFault where the engine refuses it.
+void build_engine(MujocoWorld::Engine& engine, const EngineInput& input);
+
+std::string name_of(const MujocoWorld::Engine& engine, const ContactSide& side);
+
+/// Finds contacts as bodies stand, and leaves those of pairs that may touch, with their friction.
+void find_contacts(MujocoWorld::Engine& engine);
+
+/// What touches free bodies, of the contacts that were found.
+void note_touches(MujocoWorld::Engine& engine);
+
+/// The deepest of the contacts that were found.
+std::optional<Overlap> deepest_contact(const MujocoWorld::Engine& engine);
+
+}  // namespace parallax::harness

@@ -1,0 +1,243 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "harness/engine/mujoco_engine.h"
+#include "harness/world/shapes.h"
+
+namespace parallax::harness {
+namespace {
+
+/// Deep contacts and stops give way by this share of what the rest of the world asks of them.
+constexpr double kShallow = 0.95, kDeep = 0.99, kDeepFrom_m = 0.001;
+/// Friction in a contact is so much stiffer than its pressure: what is held creeps the less.
+constexpr double kFrictionStiffness = 100.0;
+/// Motors are as rigid as the engine allows.
+constexpr double kRigid = 0.9999;
+
+std::string numbers(const Eigen::Vector3d& v) {
+  return fmt::format("{:.17g} {:.17g} {:.17g}", v.x(), v.y(), v.z());
+}
+
+std::string quaternion(const Eigen::Matrix3d& R) {
+  const Eigen::Quaterniond q(R);
+  return fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}", q.w(), q.x(), q.y(), q.z());
+}
+
+const char* word_of(ShapeForm form) {
+  switch (form) {
+    case ShapeForm::kBox:
+      return "box";
+    case ShapeForm::kSphere:
+      return "sphere";
+    case ShapeForm::kCylinder:
+      return "cylinder";
+    case ShapeForm::kCapsule:
+      return "capsule";
+  }
+  return "";
+}
+
+class TextWriter {
+ public:
+  explicit TextWriter(const EngineInput& input)
+      : input_(input), layout_(input.layout), tree_(input.tree) {
+    children_.resize(tree_.links.size() + 1);
+    for (const LinkId id : tree_.order) {
+      const auto& parent = tree_.links[id].parent;
+      children_[parent ? parent->index() + 1 : 0].push_back(id);
+    }
+  }
+
+  WorldText write() {
+    write_options();
+    out_ += "<worldbody>\n";
+    out_ += fmt::format("<geom name='{}' type='plane' size='0 0 1'/>\n", kFloorName);
+    for (const ShapeForm form :
+         {ShapeForm::kBox, ShapeForm::kSphere, ShapeForm::kCylinder, ShapeForm::kCapsule}) {
+      out_ += fmt::format("<geom name='{}' type='{}' size='1 1 1' contype='0' conaffinity='0'/>\n",
+                          probe_name(form), word_of(form));
+    }
+    for (std::size_t i = 0; i < layout_.bodies.size(); ++i) {
+      if (!layout_.link_of[i]) write_geoms(layout_.bodies.id_at(i));
+    }
+    for (const LinkId child : children_[0]) write_link(child);
+    out_ += "</worldbody>\n";
+    write_exclusions();
+    out_ += "</mujoco>\n";
+    return {std::move(out_), std::move(geom_bodies_)};
+  }
+
+ private:
+  void write_options() {
+    const SolverSpec& solver = input_.spec.solver;
+    const std::string impedance = fmt::format("{} {} {} 0.5 2", kShallow, kDeep, kDeepFrom_m);
+    out_ += fmt::format(
+        "<mujoco model='world'>\n"
+        "<compiler angle='radian' inertiafromgeom='false' boundmass='0' boundinertia='0'/>\n"
+        "<option timestep='{:.17g}' gravity='0 0 {:.17g}' integrator='Euler' cone='elliptic' "
+        "solver='Newton' iterations='100' tolerance='1e-10' impratio='{}'>\n"
+        "<flag multiccd='enable' filterparent='disable'/></option>\n",
+        solver.timestep_s, solver.gravity_m_s2, kFrictionStiffness);
+    const std::size_t contacts = most_contacts();
+    out_ += fmt::format("<size nconmax='{}' njmax='{}'/>\n", contacts,
+                        3 * contacts + 20 * tree_.links.size());
+    out_ += fmt::format(
+        "<default><geom solimp='{0}'/><joint solimplimit='{0}' "
+        "solreflimit='{1:.17g} 1' solreffriction='{2:.17g} 1' "
+        "solimpfriction='{3} {3} 1 0.5 2'/></default>\n",
+        impedance, solver.timestep_s / solver.erp, 2.0 * solver.timestep_s, kRigid);
+  }
+
+  /// Room for all shapes that move to lie on several others.
+  std::size_t most_contacts() const {
+    std::size_t moving = 0;
+    for (std::size_t i = 0; i < layout_.bodies.size(); ++i) {
+      const BodySpec& body = layout_.bodies[layout_.bodies.id_at(i)];
+      if (layout_.link_of[i] && body.collides) moving += body.shapes.size();
+    }
+    return std::min<std::size_t>(64 + 8 * moving, 512);
+  }
+
+  void write_link(LinkId id) {
+    const TreeLink& link = tree_.links[id];
+    const Pose at = pose_in_parent(link);
+    out_ += fmt::format("<body name='{}' pos='{}' quat='{}'>\n", link_name(id.index()),
+                        numbers(at.p), quaternion(at.R));
+    const Eigen::Matrix3d& I = link.I_C_kg_m2;
+    out_ += fmt::format(
+        "<inertial pos='{}' mass='{:.17g}' fullinertia='{} {:.17g} {:.17g} {:.17g}'/>\n",
+        numbers(link.p_LC), link.mass_kg, numbers(I.diagonal()), I(0, 1), I(0, 2), I(1, 2));
+    write_joint(id, link, at.R);
+    for (const BodyId body : layout_.links[id].members) write_geoms(body);
+    for (const LinkId child : children_[id.index() + 1]) write_link(child);
+    out_ += "</body>\n";
+  }
+
+  struct Pose {
+    Eigen::Vector3d p = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  };
+  Pose in_world(const TreeLink& link) const {
+    const BodySpec& body = layout_.bodies[link.frame];
+    return {body.p_WB,
+            Eigen::AngleAxisd(body.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix()};
+  }
+  Pose pose_in_parent(const TreeLink& link) const {
+    const Pose child = in_world(link);
+    if (!link.parent) return child;
+    const Pose parent = in_world(tree_.links[*link.parent]);
+    return {parent.R.transpose() * (child.p - parent.p), parent.R.transpose() * child.R};
+  }
+
+  void write_joint(LinkId id, const TreeLink& link, const Eigen::Matrix3d& R_PL) {
+    switch (link.joint) {
+      case LinkJoint::kFree:
+        out_ += fmt::format("<freejoint name='{}'/>\n", joint_name(id.index(), 0));
+        return;
+      case LinkJoint::kSlider: {
+        const JointSpec& spec = layout_.sliders[layout_.sliders.id_at(link.joint_index)];
+        write_axis(id, 0, "slide", axis_in_link(link, spec), Eigen::Vector3d::Zero(), spec.low_m,
+                   spec.high_m, spec.damping_n_s_m);
+        return;
+      }
+      case LinkJoint::kHinge: {
+        const JointSpec& spec = layout_.hinges[layout_.hinges.id_at(link.joint_index)];
+        const Pose at = in_world(link);
+        write_axis(id, 0, "hinge", axis_in_link(link, spec), at.R.transpose() * (spec.p_WA - at.p),
+                   spec.low_rad, spec.high_rad, spec.damping_nm_s);
+        return;
+      }
+      case LinkJoint::kGantry:
+        // It slides along the parent's axes and turns about its centre of mass.
+        for (int axis = 0; axis < 3; ++axis) {
+          write_axis(id, axis, "slide", R_PL.transpose().col(axis), Eigen::Vector3d::Zero(), {}, {},
+                     0.0);
+        }
+        write_axis(id, 3, "hinge", Eigen::Vector3d::UnitZ(), link.p_LC, {}, {}, 0.0);
+        return;
+    }
+  }
+
+  Eigen::Vector3d axis_in_link(const TreeLink& link, const JointSpec& spec) const {
+    return in_world(link).R.transpose() * spec.axis_W.normalized();
+  }
+
+  void write_axis(LinkId id, int part, const char* type, const Eigen::Vector3d& axis,
+                  const Eigen::Vector3d& at, const std::optional<double>& low,
+                  const std::optional<double>& high, double damping) {
+    constexpr double kNever = 1e6;  // a stop that is not there
+    out_ += fmt::format("<joint name='{}' type='{}' axis='{}' pos='{}' damping='{:.17g}'",
+                        joint_name(id.index(), part), type, numbers(axis), numbers(at), damping);
+    if (low || high) {
+      out_ += fmt::format(" limited='true' range='{:.17g} {:.17g}'", low.value_or(-kNever),
+                          high.value_or(kNever));
+    }
+    out_ += "/>\n";
+  }
+
+  /// Links that hang together are not even held against each other. What else never touches is left
+  /// out among the contacts (find_contacts).
+  void write_exclusions() {
+    out_ += "<contact>\n";
+    const auto assembly = [&](std::size_t link) {
+      return layout_.assembly_of[tree_.links[tree_.links.id_at(link)].frame.index()];
+    };
+    for (std::size_t a = 0; a < tree_.links.size(); ++a) {
+      for (std::size_t b = a + 1; b < tree_.links.size(); ++b) {
+        if (assembly(a) == 0 || assembly(a) != assembly(b)) continue;
+        out_ += fmt::format("<exclude body1='{}' body2='{}'/>\n", link_name(a), link_name(b));
+      }
+    }
+    out_ += "</contact>\n";
+  }
+
+  void write_geoms(BodyId id) {
+    const BodySpec& body = layout_.bodies[id];
+    if (!body.collides) return;
+    const PoseInLink& place = tree_.in_link[id.index()];
+    for (const BodyShape& shape : body.shapes) {
+      geom_bodies_.push_back(id);
+      out_ += fmt::format("<geom name='{}' type='{}' size='{}' pos='{}' quat='{}'/>\n",
+                          geom_name(geom_bodies_.size()), word_of(shape.form),
+                          numbers(engine_size_m(shape.form, shape.size_m)),
+                          numbers(place.p_LB + place.R_LB * shape.p_BS),
+                          quaternion(place.R_LB * shape_rotation(shape)));
+    }
+  }
+
+  const EngineInput& input_;
+  const WorldLayout& layout_;
+  const LinkTree& tree_;
+  std::vector<std::vector<LinkId>> children_;  // of the world, then by LinkId
+  std::string out_;
+  std::vector<BodyId> geom_bodies_;
+};
+
+}  // namespace
+
+std::string link_name(std::size_t link) { return fmt::format("link{}", link); }
+std::string joint_name(std::size_t link, int part) { return fmt::format("joint{}.{}", link, part); }
+std::string geom_name(std::size_t geom) { return fmt::format("geom{}", geom); }
+std::string probe_name(ShapeForm form) { return fmt::format("probe-{}", word_of(form)); }
+
+Eigen::Vector3d engine_size_m(ShapeForm form, const Eigen::Vector3d& size_m) {
+  const double radius_m = 0.5 * size_m.x();
+  switch (form) {
+    case ShapeForm::kBox:
+      break;
+    case ShapeForm::kSphere:
+      return {radius_m, radius_m, radius_m};
+    case ShapeForm::kCylinder:
+      return {radius_m, 0.5 * size_m.z(), radius_m};
+    case ShapeForm::kCapsule:
+      // A hair of a rod is left to one that is all caps: the engine knows none without.
+      return {radius_m, std::max(0.5 * (size_m.z() - size_m.x()), 1e-9), radius_m};
+  }
+  return 0.5 * size_m;
+}
+
+WorldText write_mjcf(const EngineInput& input) { return TextWriter(input).write(); }
+
+}  // namespace parallax::harness

@@ -1,0 +1,391 @@
+#include "harness/engine/mujoco_world.h"
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+
+#include "compiler/base/contract.h"
+#include "compiler/base/hash.h"
+#include "harness/engine/mujoco_engine.h"
+#include "harness/world/angles.h"
+
+namespace parallax::harness {
+namespace {
+
+using Engine = MujocoWorld::Engine;
+
+// The engine's hooks carry no context, so the thread that steps names the counter.
+thread_local std::int64_t* t_warning_count = nullptr;
+
+/// By itself the engine would write to a file in the current folder.
+void count_warning(const char* /*text*/) {
+  if (t_warning_count != nullptr) ++*t_warning_count;
+}
+
+/// By itself the engine would end the process.
+void throw_fault(const char* text) { throw EngineFault(text); }
+
+void set_hooks() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    mju_user_error = &throw_fault;
+    mju_user_warning = &count_warning;
+  });
+}
+
+class WarningCounter {
+ public:
+  explicit WarningCounter(std::int64_t& count) : previous_(t_warning_count) {
+    t_warning_count = &count;
+  }
+  ~WarningCounter() { t_warning_count = previous_; }
+  WarningCounter(const WarningCounter&) = delete;
+  WarningCounter& operator=(const WarningCounter&) = delete;
+
+ private:
+  std::int64_t* previous_;
+};
+
+class LapTimer {
+ public:
+  explicit LapTimer(bool on) : on_(on) {
+    if (on_) start_ = Clock::now();
+  }
+  void add_lap_to(double& seconds) {
+    if (!on_) return;
+    const Clock::time_point now = Clock::now();
+    seconds += std::chrono::duration<double>(now - start_).count();
+    start_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool on_;
+  Clock::time_point start_;
+};
+
+void mix_in(std::uint64_t& hash, double value) {
+  hash = base::fnv1a64_word(hash, std::bit_cast<std::uint64_t>(value));
+}
+
+/// No scene comes near this, in m, m/s or rad/s.
+constexpr double kLargestSaneState = 1e6;
+
+/// Folds the state into the digest; false if it is not sane.
+bool fold_in(Engine& engine) {
+  const mjModel& model = *engine.model;
+  const mjData& data = *engine.data;
+  bool sane = true;
+  const auto fold = [&](const mjtNum* values, int count) {
+    for (int i = 0; i < count; ++i) {
+      mix_in(engine.digest, values[i]);
+      sane = sane && std::abs(values[i]) < kLargestSaneState;  // false for NaN, too
+    }
+  };
+  fold(data.qpos, model.nq);
+  fold(data.qvel, model.nv);
+  return sane;
+}
+
+Eigen::Matrix3d about_z(double angle_rad) {
+  return Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
+struct PlacedLink {
+  Eigen::Vector3d p_WL = Eigen::Vector3d::Zero();
+  double yaw_rad = 0.0;
+};
+
+PlacedLink place_by(const TreeLink& link, std::span<const Placement> placements) {
+  const Placement& at = placements[link.frame.index()];
+  return {at.p_WB, at.yaw_rad};
+}
+
+PlacedLink default_place(const Engine& engine, const TreeLink& link) {
+  const BodySpec& body = engine.layout.bodies[link.frame];
+  return {body.p_WB, body.yaw_rad};
+}
+
+/// The centre of mass and the heading of a link in its parent.
+struct PlaceInParent {
+  Eigen::Vector3d p_PC = Eigen::Vector3d::Zero();
+  double yaw_rad = 0.0;
+};
+
+PlaceInParent in_parent(const TreeLink& link, const PlacedLink& own, const PlacedLink& parent) {
+  const Eigen::Matrix3d R_PW = about_z(-parent.yaw_rad);
+  const Eigen::Vector3d p_WC = own.p_WL + about_z(own.yaw_rad) * link.p_LC;
+  return {R_PW * (p_WC - parent.p_WL), own.yaw_rad - parent.yaw_rad};
+}
+
+void set_joint(Engine& engine, LinkId id, std::span<const Placement> placements) {
+  const TreeLink& link = engine.tree.links[id];
+  const PlacedLink own = place_by(link, placements);
+  mjtNum* const q = engine.data->qpos + engine.joints[id.index()].q;
+  if (link.joint == LinkJoint::kFree) {
+    std::copy_n(own.p_WL.data(), 3, q);
+    q[3] = std::cos(0.5 * own.yaw_rad);
+    q[4] = q[5] = 0.0;
+    q[6] = std::sin(0.5 * own.yaw_rad);
+    return;
+  }
+  PlacedLink parent, parent_default;
+  if (link.parent) {
+    const TreeLink& on = engine.tree.links[*link.parent];
+    parent = place_by(on, placements);
+    parent_default = default_place(engine, on);
+  }
+  const PlaceInParent now = in_parent(link, own, parent);
+  const PlaceInParent then = in_parent(link, default_place(engine, link), parent_default);
+  const Eigen::Vector3d shift_P = now.p_PC - then.p_PC;
+  if (link.joint == LinkJoint::kGantry) {
+    std::copy_n(shift_P.data(), 3, q);
+    q[3] = wrapped(now.yaw_rad - then.yaw_rad);
+  } else if (link.joint == LinkJoint::kSlider) {
+    const JointSpec& spec = engine.layout.sliders[engine.layout.sliders.id_at(link.joint_index)];
+    q[0] = (about_z(-parent_default.yaw_rad) * spec.axis_W.normalized()).dot(shift_P);
+  }
+  // A hinge begins where it is by default: no start sets it.
+}
+
+/// Every mass from what is specified, so that no rounding of earlier resets is left.
+void set_masses(Engine& engine, std::span<const Placement> placements) {
+  mjModel& model = *engine.model;
+  bool changed = false;
+  for (std::size_t i = 0; i < engine.tree.links.size(); ++i) {
+    const TreeLink& link = engine.tree.links[engine.tree.links.id_at(i)];
+    if (!engine.layout.is_free[link.frame.index()]) continue;
+    const double wanted_kg = placements[link.frame.index()].mass_kg;
+    const double mass_kg = wanted_kg > 0.0 ? wanted_kg : link.mass_kg;
+    if (mass_kg == engine.masses_kg[i]) continue;
+    const int body = engine.bodies[i];
+    const double share = mass_kg / link.mass_kg;
+    model.body_mass[body] = mass_kg;
+    Eigen::Map<Eigen::Vector3d>(model.body_inertia + 3 * body) = share * engine.moments_kg_m2[i];
+    engine.masses_kg[i] = mass_kg;
+    changed = true;
+  }
+  if (changed) mj_setConst(&model, engine.data.get());
+}
+
+/// Bodies that do not fall are carried by a force at their centre.
+void carry_weightless(Engine& engine) {
+  for (std::size_t i = 0; i < engine.tree.links.size(); ++i) {
+    if (engine.tree.links[engine.tree.links.id_at(i)].gravity) continue;
+    engine.data->xfrc_applied[6 * engine.bodies[i] + 2] =
+        -engine.masses_kg[i] * engine.solver.gravity_m_s2;
+  }
+}
+
+/// Where everything is, from the joints.
+void update_places(Engine& engine) {
+  mj_kinematics(engine.model.get(), engine.data.get());
+  mj_comPos(engine.model.get(), engine.data.get());
+}
+
+/// A motor is the engine's dry friction against a rail that moves: what it takes is bounded, and it
+/// brings the joint to the speed of the rail.
+void aim_motors(Engine& engine) {
+  mjData& data = *engine.data;
+  constexpr int kNumbersOfRow = 4, kDamping = 1;
+  for (int row = data.ne; row < data.ne + data.nf; ++row) {
+    if (data.efc_type[row] != mjCNSTR_FRICTION_DOF) continue;
+    const double target = engine.targets[static_cast<std::size_t>(data.efc_id[row])];
+    data.efc_aref[row] += data.efc_KBIP[kNumbersOfRow * row + kDamping] * target;
+  }
+}
+
+/// The stages of mj_step, with a look between them.
+void step_once(Engine& engine) {
+  const mjModel* const model = engine.model.get();
+  mjData* const data = engine.data.get();
+  LapTimer timer(engine.measure_times);
+  find_contacts(engine);
+  note_touches(engine);
+  engine.statistics.contacts += data->ncon;
+  timer.add_lap_to(engine.statistics.collide_s);
+  mj_crb(model, data);
+  mj_factorM(model, data);
+  mj_makeConstraint(model, data);
+  mj_transmission(model, data);
+  mj_projectConstraint(model, data);
+  mj_fwdVelocity(model, data);
+  aim_motors(engine);
+  mj_fwdActuation(model, data);
+  mj_fwdAcceleration(model, data);
+  mj_fwdConstraint(model, data);
+  mj_Euler(model, data);
+  update_places(engine);
+  timer.add_lap_to(engine.statistics.solve_s);
+}
+
+/// Contacts or constraints that found no room would be missing.
+bool has_overflowed(const mjData& data) {
+  return data.warning[mjWARN_CONTACTFULL].number + data.warning[mjWARN_CNSTRFULL].number > 0;
+}
+
+Eigen::Vector3d link_place(const Engine& engine, LinkId id) {
+  return Eigen::Map<const Eigen::Vector3d>(engine.data->xpos + 3 * engine.bodies[id.index()]);
+}
+
+Eigen::Matrix3d link_rotation(const Engine& engine, LinkId id) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(
+      engine.data->xmat + 9 * engine.bodies[id.index()]);
+}
+
+void drive(Engine& engine, int dof, double velocity, double most) {
+  engine.model->dof_frictionloss[dof] = most;
+  engine.targets[static_cast<std::size_t>(dof)] = velocity;
+}
+
+}  // namespace
+
+void ModelDeleter::operator()(mjModel* model) const { mj_deleteModel(model); }
+void DataDeleter::operator()(mjData* data) const { mj_deleteData(data); }
+
+MujocoWorld::MujocoWorld(const EngineInput& input) {
+  set_hooks();
+  engine_ = std::make_unique<Engine>(input);
+  build_engine(*engine_, input);
+  update_places(*engine_);
+}
+
+MujocoWorld::~MujocoWorld() = default;
+
+EngineName MujocoWorld::engine() const { return {"mujoco", mj_versionString()}; }
+void MujocoWorld::enter_thread() const {}
+const WorldLayout& MujocoWorld::layout() const { return engine_->layout; }
+double MujocoWorld::timestep_s() const { return engine_->solver.timestep_s; }
+std::uint64_t MujocoWorld::digest() const { return engine_->digest; }
+const StepStatistics& MujocoWorld::statistics() const { return engine_->statistics; }
+void MujocoWorld::measure_times(bool on) { engine_->measure_times = on; }
+
+std::optional<Overlap> MujocoWorld::reset(std::span<const Placement> placements,
+                                          std::uint64_t /*seed*/) {
+  PARALLAX_REQUIRE(placements.size() == engine_->layout.bodies.size(), "one placement per body");
+  const WarningCounter counter(engine_->statistics.engine_messages);
+  engine_->is_broken = false;
+  set_masses(*engine_, placements);
+  mj_resetData(engine_->model.get(), engine_->data.get());
+  for (const LinkId id : engine_->tree.order) set_joint(*engine_, id, placements);
+  carry_weightless(*engine_);
+  for (std::size_t i = 0; i < engine_->sliders.size(); ++i) {
+    const SliderId id = engine_->layout.sliders.id_at(i);
+    set_motor(id, 0.0, engine_->layout.sliders[id].max_force_n);
+  }
+  for (std::size_t i = 0; i < engine_->hinges.size(); ++i) {
+    const HingeId id = engine_->layout.hinges.id_at(i);
+    set_hinge_motor(id, 0.0, engine_->layout.hinges[id].max_torque_nm);
+  }
+  for (std::size_t i = 0; i < engine_->gantries.size(); ++i) {
+    set_gantry(engine_->layout.gantries.id_at(i), Eigen::Vector3d::Zero(), 0.0);
+  }
+  std::fill(engine_->touches.begin(), engine_->touches.end(), Touch{});
+  update_places(*engine_);
+  engine_->digest = base::kFnvStart;
+  fold_in(*engine_);
+
+  find_contacts(*engine_);
+  const std::optional<Overlap> overlap = deepest_contact(*engine_);
+  if (overlap && overlap->depth_m > engine_->solver.start_penetration_m) return overlap;
+  return std::nullopt;
+}
+
+bool MujocoWorld::step() {
+  if (engine_->is_broken) return false;
+  const WarningCounter counter(engine_->statistics.engine_messages);
+  ++engine_->statistics.steps;
+  try {
+    step_once(*engine_);
+  } catch (const EngineFault&) {
+    ++engine_->statistics.engine_messages;
+    engine_->is_broken = true;
+    return false;
+  }
+  return fold_in(*engine_) && !has_overflowed(*engine_->data);
+}
+
+double MujocoWorld::slider_position_m(SliderId id) const {
+  return engine_->data->qpos[engine_->joints[engine_->sliders[id.index()].index()].q];
+}
+
+double MujocoWorld::slider_rate_m_s(SliderId id) const {
+  return engine_->data->qvel[engine_->joints[engine_->sliders[id.index()].index()].v];
+}
+
+void MujocoWorld::set_motor(SliderId id, double velocity_m_s, double max_force_n) {
+  drive(*engine_, engine_->joints[engine_->sliders[id.index()].index()].v, velocity_m_s,
+        max_force_n);
+}
+
+double MujocoWorld::hinge_angle_rad(HingeId id) const {
+  return wrapped(engine_->data->qpos[engine_->joints[engine_->hinges[id.index()].index()].q]);
+}
+
+double MujocoWorld::hinge_rate_rad_s(HingeId id) const {
+  return engine_->data->qvel[engine_->joints[engine_->hinges[id.index()].index()].v];
+}
+
+void MujocoWorld::set_hinge_motor(HingeId id, double rate_rad_s, double max_torque_nm) {
+  drive(*engine_, engine_->joints[engine_->hinges[id.index()].index()].v, rate_rad_s,
+        max_torque_nm);
+}
+
+Eigen::Vector3d MujocoWorld::gantry_position_m(GantryId id) const {
+  const TreeLink& link = engine_->tree.links[engine_->gantries[id.index()]];
+  const BodySpec& child = engine_->layout.bodies[link.joint_child];
+  const Eigen::Vector3d p_WC = position(link.joint_child);
+  if (!link.joint_parent) return p_WC - child.p_WB;
+  const BodySpec& parent = engine_->layout.bodies[*link.joint_parent];
+  const Eigen::Vector3d start_P = about_z(-parent.yaw_rad) * (child.p_WB - parent.p_WB);
+  return rotation(*link.joint_parent).transpose() * (p_WC - position(*link.joint_parent)) - start_P;
+}
+
+double MujocoWorld::gantry_yaw_rad(GantryId id) const {
+  return wrapped(engine_->data->qpos[engine_->joints[engine_->gantries[id.index()].index()].q + 3]);
+}
+
+void MujocoWorld::set_gantry(GantryId id, const Eigen::Vector3d& velocity_m_s,
+                             double yaw_rate_rad_s) {
+  constexpr double kAnyForce_n = 1e9;
+  const JointSpec& spec = engine_->layout.gantries[id];
+  const int dof = engine_->joints[engine_->gantries[id.index()].index()].v;
+  drive(*engine_, dof, velocity_m_s.x(), spec.max_force_n);
+  drive(*engine_, dof + 1, velocity_m_s.y(), spec.max_force_n);
+  drive(*engine_, dof + 2, velocity_m_s.z(), spec.parent.empty() ? kAnyForce_n : spec.max_force_n);
+  drive(*engine_, dof + 3, yaw_rate_rad_s, spec.max_torque_nm);
+}
+
+double MujocoWorld::mass_kg(BodyId id) const {
+  const std::optional<LinkId> link = engine_->layout.link_of[id.index()];
+  return link ? engine_->masses_kg[link->index()] : 0.0;
+}
+
+Eigen::Vector3d MujocoWorld::position(BodyId id) const {
+  const PoseInLink& place = engine_->tree.in_link[id.index()];
+  const std::optional<LinkId> link = engine_->layout.link_of[id.index()];
+  if (!link) return place.p_LB;
+  return link_place(*engine_, *link) + link_rotation(*engine_, *link) * place.p_LB;
+}
+
+Eigen::Matrix3d MujocoWorld::rotation(BodyId id) const {
+  const PoseInLink& place = engine_->tree.in_link[id.index()];
+  const std::optional<LinkId> link = engine_->layout.link_of[id.index()];
+  return link ? Eigen::Matrix3d(link_rotation(*engine_, *link) * place.R_LB) : place.R_LB;
+}
+
+const Touch& MujocoWorld::touch(BodyId id) const { return engine_->touches[id.index()]; }
+
+}  // namespace parallax::harness
+
+extern "C" __attribute__((visibility("default"))) parallax::harness::PhysicsWorld*
+parallax_make_mujoco_world(const char* version, const parallax::harness::EngineInput& input) {
+  if (std::strcmp(version, PARALLAX_ENGINE_VERSION) != 0) return nullptr;
+  return new parallax::harness::MujocoWorld(input);
+}
