@@ -8,7 +8,7 @@ namespace parallax::harness {
 
 /// Which program it is: two of the same give the same runs.
 struct ProgramIdentity {
-  std::string version;  // "0.1.0"
+  std::string version;  // "0.2.0"
   std::string build;  // tells builds apart, those of the libraries that are loaded with it as well
   friend bool operator==(const ProgramIdentity&, const ProgramIdentity&) = default;
 };
@@ -16,7 +16,7 @@ struct ProgramIdentity {
 /// Of this process.
 ProgramIdentity this_program(std::string version);
 
-/// "0.1.0 (build 5f2c...)".
+/// "0.2.0 (build 5f2c...)".
 std::string to_string(const ProgramIdentity& identity);
 
 /// The line with which a worker says who it is, before it is asked anything.

@@ -195,10 +195,14 @@ Command adapter_check_command() {
       "  parallax adapter-check --act \"drive target.x=1.5\" -- ./my_adapter --port 3000\n"
       "  parallax adapter-check --scenario fetch.yaml     its command, starts and actions\n"
       "Exit codes: 0 no fault, 1 faults, 2 usage, 3 a scenario that does not fit, 4 interrupted.");
-  command.option("command", options->command,
-                 "The simulator: a program and its arguments, behind -- if these have dashes");
-  command.option("--scenario", options->scenario,
-                 "Check it against this scenario: variables, starts and actions are its own");
+  command
+      .option("command", options->command,
+              "The simulator: a program and its arguments, behind -- if these have dashes")
+      .program();
+  command
+      .option("--scenario", options->scenario,
+              "Check it against this scenario: variables, starts and actions are its own")
+      .file({"yaml"});
   command
       .option("--act", options->actions,
               "An action to try, \"NAME ARGUMENT=VALUE ...\"; repeated: in this order. Default: "

@@ -163,7 +163,8 @@ Command bisect_command() {
   command
       .option("scenario", options->run,
               "Behind `--`: the scenario, and options of `parallax run` for each revision")
-      .required();
+      .required()
+      .file({"yaml"});
   command.flag("--first-parent", options->first_parent, "Of merges follow the first parent only");
   add_command_options(command, options->commands, false);
   return {std::move(command),

@@ -115,7 +115,8 @@ Command calibrate_command() {
       .check(OneOf{simulators});
   command.option("--probability", options->probability, "Of a run of --serve to go wrong")
       .check(FiniteNumber{0.0, 1.0});
-  command.option("--draws", options->draws, "The file by whose size --serve counts its own draws");
+  command.option("--draws", options->draws, "The file by whose size --serve counts its own draws")
+      .file();
   return {std::move(command), [options](Invocation& invocation) {
             return options->serve.empty() ? run_calibrate(*options, invocation)
                                           : serve_synthetic(*options);

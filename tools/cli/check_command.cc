@@ -89,6 +89,7 @@ Command check_command() {
       "Several .e files are one model; every .yaml file is a scenario of its own.");
   add_model_options(command, options->model);
   add_plan_options(command, options->model);
+  command.heading("Lint");
   command.option("--allow", options->allow, "Do not report warnings of this code")
       .list(ListForm::kAsManyAsFollowFromOne);
   command.flag("--no-lint", options->no_lint, "Report no W21xx: what is legal but odd");

@@ -132,6 +132,7 @@ int Invocation::finish(int code) {
 }
 
 void add_common_options(OptionTable& table, CommonOptions& options) {
+  const UnderHeading general(table, kGeneralHeading);
   table.flag("--json", options.json, "Print exactly one JSON document on standard output");
   table.flag("-q,--quiet", options.quiet, "Print no progress, remarks or warnings");
   table.flag("-v,--verbose", options.verbosity, "Say more on standard error");
@@ -147,8 +148,10 @@ void add_common_options(OptionTable& table, CommonOptions& options) {
       .check(WholeNumber{16, 10'000'000});
   table.flag("--allow-outside", options.allow_outside,
              "Let files name files outside their folder (docs/trust.md)");
-  table.option("--footprint", options.footprint,
-               "Write which files were read, and how much memory was used, as JSON");
+  table
+      .option("--footprint", options.footprint,
+              "Write which files were read, and how much memory was used, as JSON")
+      .file();
 }
 
 }  // namespace parallax::tools

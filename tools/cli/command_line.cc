@@ -87,6 +87,7 @@ CLI::Option* add_option(CLI::App& app, const Option& from) {
   std::visit(AddCheck{*added}, from.value_check);
   if (!from.value_name.empty()) added->type_name(from.value_name);
   if (from.shows_default) added->capture_default_str();
+  added->group(from.heading);
   return added;
 }
 
@@ -101,6 +102,8 @@ class Declared {
       by_name[option.names] = added;
       if (option.was_given != nullptr) asked_.emplace_back(added, option.was_given);
     }
+    // Declared again, so that it stands last.
+    app.set_help_flag("-h,--help", "Print this help message and exit")->group(kGeneralHeading);
     for (const auto& option : table.options()) {
       for (const auto& other : option.partners) by_name.at(option.names)->needs(by_name.at(other));
     }
@@ -132,17 +135,28 @@ std::vector<std::string> known_names(const CLI::App& app) {
   return names;
 }
 
+/// The library leaves two empty lines between groups of options.
+std::string with_single_gaps(std::string text) {
+  for (auto at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n", at)) {
+    text.erase(at, 1);
+  }
+  return text;
+}
+
 }  // namespace
 
 ParsedLine parse_command_line(const Program& program, int argc, char** argv) {
   CLI::App app(program.table.description(), program.table.name());
   Declared declared;
-  if (!program.version.empty()) app.set_version_flag("--version", program.version);
+  if (!program.version.empty()) {
+    app.set_version_flag("--version", program.version)->group(kGeneralHeading);
+  }
   if (program.needs_command) app.require_subcommand(1);
   declared.add(app, program.table);
   std::vector<const CLI::App*> commands;
   for (const auto* table : program.commands) {
     auto* command = app.add_subcommand(table->name(), table->description());
+    if (!table->subject().empty()) command->group(table->subject());
     if (table->is_hidden()) command->group("");
     declared.add(*command, *table);
     commands.push_back(command);
@@ -153,7 +167,7 @@ ParsedLine parse_command_line(const Program& program, int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {  // also --help and --version
     line.exit_code = app.exit(error, output, messages);
-    line.output = output.str();
+    line.output = with_single_gaps(output.str());
     line.messages = messages.str();
     if (dynamic_cast<const CLI::Success*>(&error) == nullptr) {
       line.error = error.what();

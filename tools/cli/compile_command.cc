@@ -149,6 +149,7 @@ Command compile_command() {
       "      --regions scenario.yaml --emit=cfg-dot -o plan.dot");
   add_model_options(command, options->model).is_required = false;  // --emit=help needs none
   add_plan_options(command, options->model);
+  command.heading("What is written");
   command.flag("--no-projection-line", options->no_projection,
                "Leave out `c t pmc` and `c p show`, for readers that take no comment there");
   command
@@ -161,7 +162,7 @@ Command compile_command() {
   command.flag(
       "--stats", options->model.stats,
       "Show on standard error what each axiom costs, dearest first, and what each pass took");
-  command.option("-o,--output", options->out, "File to write; default: standard output");
+  command.option("-o,--output", options->out, "File to write; default: standard output").file();
   command
       .option("--emit", options->emit,
               "What to print: a stage, or the value after a pass; `help` lists them")

@@ -135,7 +135,7 @@ int threshold(const ThresholdCommandOptions& options, Invocation& invocation) {
 
 /// Those that both commands have.
 void add_border_options(OptionTable& command, BorderOptions& options) {
-  command.option("run_dir", options.run.folder, "Folder of a run").required();
+  command.option("run_dir", options.run.folder, "Folder of a run").required().folder();
   command.option("--sample", options.sample, "TRACE.SAMPLE; default: the first discrepancy");
   command
       .option("--tolerance", options.tolerance,

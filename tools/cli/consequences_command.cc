@@ -237,6 +237,7 @@ Command consequences_command() {
       "      --observe \"!HoldsAt(Alive(),time)\" --horizon 3");
   add_model_options(command, options->model);
   add_plan_options(command, options->model);
+  command.heading("What is asked");
   command.flag("--always", options->always, "Only what is in all traces");
   command.flag("--sometimes", options->sometimes, "Only what is in some traces and not in all");
   command.flag("--both", options->both, "The default");
@@ -244,6 +245,7 @@ Command consequences_command() {
   command.flag("--why", options->query.why,
                "Behind every fact that is in all traces a minimal set of axioms that it follows "
                "from");
+  command.heading("Explanations of an observation");
   command.option("--abduce", options->abduction.events,
                  "An event, or all that have this name: in which smallest sets of occurrences "
                  "does what --observe says follow?");

@@ -51,7 +51,7 @@ Command coverage_command() {
       "  parallax coverage out/edge\n"
       "  parallax coverage out/plan1 out/plan2 --lcov coverage.info\n"
       "Exit codes: 0, and 3 for a run whose scenario has changed since.");
-  command.option("run_dirs", options->coverage.folders, "Folders of runs").required();
+  command.option("run_dirs", options->coverage.folders, "Folders of runs").required().folder();
   add_recorded_scenario_option(command, options->coverage.scenario);
   command
       .option(
@@ -59,10 +59,11 @@ Command coverage_command() {
           "Look at so many traces of each model at most, but at all that were simulated; 0: all")
       .check(NonNegative{})
       .show_default();
-  command.option(
-      "--lcov", options->lcov,
-      "Write a tracefile for genhtml, editors and CI services; -: on the standard output, "
-      "instead of the text");
+  command
+      .option("--lcov", options->lcov,
+              "Write a tracefile for genhtml, editors and CI services; -: on the standard output, "
+              "instead of the text")
+      .file();
   return {std::move(command),
           [options](Invocation& invocation) { return cover(*options, invocation); }};
 }

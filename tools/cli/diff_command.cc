@@ -332,9 +332,11 @@ int run(const DiffOptions& given, Invocation& invocation) {
 void add_model_diff_options(OptionTable& command, DiffOptions& options) {
   auto& model = options.models.load.model;
   command.option("--with", model.models, "Model file that belongs to both models")
-      .list(ListForm::kOneEachTime);
+      .list(ListForm::kOneEachTime)
+      .file({"e"});
   command.option("-I,--include", model.include_dirs, "Folder in which `load` looks")
-      .list(ListForm::kOneEachTime);
+      .list(ListForm::kOneEachTime)
+      .folder();
   command.option("--compat", model.compat, "Meaning of the 2005 reasoner where it differs")
       .check(OneOf{{"decreasoner"}});
   command.option("--horizon", model.horizon, "Compare traces up to this timepoint")
@@ -365,18 +367,24 @@ Command diff_command() {
       "  parallax diff --gate rules.yaml old.e new.e --markdown gate.md\n"
       "Exit code 1 if there is a difference, 0 if there is none. docs/git.md shows how git uses "
       "it.");
-  command.option("old", options->old_path,
-                 "Model (.e, .dec.cnf, .yaml), plan (.lisp, .bind), traces (.jsonl), run or rates "
-                 "(.json)");
-  command.option("new", options->new_path, "The other revision");
-  command.option("--textconv", options->textconv, "Print the canonical text of one file instead");
-  command.option(
-      "--gate", options->gate,
-      "Say instead which of these rules (YAML) the change keeps; exit code 1 unless all");
+  command
+      .option("old", options->old_path,
+              "Model (.e, .dec.cnf, .yaml), plan (.lisp, .bind), traces (.jsonl), run or rates "
+              "(.json)")
+      .file();
+  command.option("new", options->new_path, "The other revision").file();
+  command.heading("What is told");
+  command.option("--textconv", options->textconv, "Print the canonical text of one file instead")
+      .file();
+  command
+      .option("--gate", options->gate,
+              "Say instead which of these rules (YAML) the change keeps; exit code 1 unless all")
+      .file({"yaml"});
   command
       .option("--markdown", options->markdown,
               "With --gate: write what it says to this file, for a pull request")
-      .needs("--gate");
+      .needs("--gate")
+      .file();
   command.flag("--fallback", options->fallback,
                "With --textconv: print a file that has errors as it is");
   command.flag("--stat", options->stat, "Print numbers only");

@@ -401,10 +401,14 @@ Command draw_command() {
       "violet, observed in red. index.html in the folder shows them all. What moved is taken from\n"
       "the run's recording; without one it is simulated again.\n"
       "Exit codes: 0 drawn, 3 the scenario has changed since the run.");
-  command.option("what", options->what, "Scenario file, or folder of a run").required();
-  command.option("-o,--out", options->out,
-                 "File (of a scenario; default scene.svg) or folder (of a run; default "
-                 "pictures in its folder)");
+  command.option("what", options->what, "Scenario file, or folder of a run")
+      .required()
+      .file({"yaml"});
+  command
+      .option("-o,--out", options->out,
+              "File (of a scenario; default scene.svg) or folder (of a run; default "
+              "pictures in its folder)")
+      .file();
   command.option("--sample", options->sample,
                  "TRACE.SAMPLE of a run; default: the first discrepancy");
   add_recorded_scenario_option(command, options->scenario);

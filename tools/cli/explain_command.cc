@@ -276,10 +276,12 @@ Command explain_command() {
       "  parallax explain domain.e --until \"HoldsAt(At(kitchen),time)\"\n"
       "Exit code 1 if there is a contradiction, 0 if there is none or a fact was explained.");
   add_model_options(command, options->model);
+  command.heading("Contradictions");
   command.flag("--all", options->sets.all,
                "All minimal sets of axioms; with --why: further causes as well");
   command.option("--limit", options->sets.limit, "With --all: stop after this many sets; 0: all")
       .check(NonNegative{});
+  command.heading("Why a fact holds");
   command
       .option("--why", options->why.fact,
               "Tell what is behind this fact: HoldsAt(F(a),3), Happens(E(),2), or !...")
@@ -287,6 +289,7 @@ Command explain_command() {
   command.option("--trace", options->why.trace, "The trace that --why is about")
       .check(Positive{})
       .show_default();
+  command.heading("Discrepancies of a run");
   command.option("--sample", options->sample,
                  "Of a run folder: TRACE.SAMPLE; default: the first discrepancy");
   add_recorded_scenario_option(command, options->scenario);

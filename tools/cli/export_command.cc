@@ -132,7 +132,7 @@ Command export_command() {
       "Foxglove\n"
       "  parallax replay out/edge --sample 1.4 --record        makes a recording that is missing\n"
       "Exit codes: 0, 2 without a recording, 3 for a broken one.");
-  command.option("run_dir", options->folder, "Folder of a run").required();
+  command.option("run_dir", options->folder, "Folder of a run").required().folder();
   command.option("--sample", options->sample, "TRACE.SAMPLE; default: the first discrepancy");
   command
       .option("--format", options->format,
@@ -140,8 +140,10 @@ Command export_command() {
               "observations)")
       .check(OneOf{{"csv", "mcap"}})
       .show_default();
-  command.option("-o,--output", options->output,
-                 "File to write, -: standard output; default: csv there, mcap in the run folder");
+  command
+      .option("-o,--output", options->output,
+              "File to write, -: standard output; default: csv there, mcap in the run folder")
+      .file();
   return {std::move(command),
           [options](Invocation& invocation) { return export_motion(*options, invocation); }};
 }

@@ -112,7 +112,9 @@ Command fmt_command() {
       "  parallax fmt --check scenarios/two_regions/domain.e\n"
       "  parallax fmt - < domain.e\n"
       "Files are rewritten in place; one with a syntax error is left as it is.");
-  command.option("files", options->files, "Model files (.e); - for standard input").required();
+  command.option("files", options->files, "Model files (.e); - for standard input")
+      .required()
+      .file({"e"});
   command.flag("--check", options->check,
                "Write nothing; name the files that would change and exit with 1 if any would");
   command.flag("--stdout", options->to_stdout, "Print instead of rewriting");

@@ -19,6 +19,7 @@ constexpr double kBeatsInSilence = 5.0;  // so many may be lost on the way, but 
 }  // namespace
 
 void add_launcher_options(OptionTable& command, LauncherOptions& options) {
+  const UnderHeading heading(command, "Workers on other machines");
   command
       .option("--launcher", options.launcher,
               "Start workers through this command, which theirs is put behind: 'srun -n1 -c1', "
@@ -28,7 +29,8 @@ void add_launcher_options(OptionTable& command, LauncherOptions& options) {
       .option("--hosts", options.hosts,
               "Likewise through the commands in this file, each with the number of its workers; "
               "--jobs, if given, says how many of all there are at a time")
-      .named_value("FILE");
+      .named_value("FILE")
+      .file();
   command
       .option("--first-slot", options.first_slot,
               "Of --hosts: begin with this one of all workers' places, counted from 0; for several "

@@ -88,11 +88,14 @@ Command learn_command() {
       "  parallax learn restock.yaml --explore 100 -o learned.e --out out/learned\n"
       "Exit codes: 0 the scenario's run is clean with the learned model; 4 it is not, or not yet: "
       "the best model so far is printed.");
-  command.option("scenario", learn.scenario, "Scenario file (YAML)").required();
-  command.option("-o,--output", options->output, "Write the learned model to this file, too");
-  command.option("--out", options->folder,
-                 "Folder of the model, its scenario, a log and all runs; default "
-                 "out/learn-NAME, numbered if taken");
+  command.option("scenario", learn.scenario, "Scenario file (YAML)").required().file({"yaml"});
+  command.option("-o,--output", options->output, "Write the learned model to this file, too")
+      .file({"e"});
+  command
+      .option("--out", options->folder,
+              "Folder of the model, its scenario, a log and all runs; default "
+              "out/learn-NAME, numbered if taken")
+      .folder();
   command
       .option("--explore", learn.explore,
               "Simulate so many random sequences of the plan's events, too")

@@ -429,8 +429,9 @@ Command ledger_command() {
   command.option("action", options->action, "list, add, check or status")
       .required()
       .check(OneOf{{"list", "add", "check", "status"}});
-  command.option("words", options->words, "Folders of runs; of `status` an id and what it is");
-  command.option("--ledger", options->ledger, "The file").show_default();
+  command.option("words", options->words, "Folders of runs; of `status` an id and what it is")
+      .folder();
+  command.option("--ledger", options->ledger, "The file").show_default().file({"yaml"});
   command.option("--status", options->status, "list: only these")
       .check(OneOf{{"open", "repaired", "accepted"}});
   command.option("--in", options->in, "status repaired: the revision");

@@ -10,6 +10,7 @@
 #include "tools/cli/command.h"
 #include "tools/cli/command_line.h"
 #include "tools/cli/limits.h"
+#include "tools/cli/manual_commands.h"
 
 namespace parallax::tools {
 namespace {
@@ -25,7 +26,8 @@ constexpr const char* kFooter =
     "  parallax compile model.e -o model.dec.cnf\n"
     "  parallax explain model.e --why \"HoldsAt(F(),3)\"\n"
     "Exit codes: 0 nothing to report, 1 finding, 2 usage, 3 input rejected, 4 inconclusive,\n"
-    "5 internal error, 130 and 143 interrupted.";
+    "5 internal error, 130 and 143 interrupted.\n"
+    "More: parallax help exit-codes, files, output, seeds, trust, limits; parallax COMMAND --help.";
 
 bool wants_json(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
@@ -63,24 +65,42 @@ int usage_error(const ParsedLine& line, std::string_view command, int argc, char
   return 2;
 }
 
+/// By what one does with them, in the order in which one comes to it.
+std::vector<Command> all_commands(const Program& program) {
+  std::vector<Command> all;
+  const auto add = [&all](const char* subject, std::vector<Command> commands) {
+    for (auto& command : commands) {
+      command.options.set_subject(subject);
+      all.push_back(std::move(command));
+    }
+  };
+  add("Begin", {new_command(), check_command(), fmt_command()});
+  add("Find where model and world part",
+      {run_command(), rates_command(), monitor_command(), prove_command(), suite_command()});
+  add("Look into a run",
+      {report_command(), draw_command(), replay_command(), explain_command(), confirm_command(),
+       threshold_command(), coverage_command(), export_command()});
+  add("Ask the model",
+      {traces_command(), verify_command(), consequences_command(), compile_command()});
+  add("Change the model", {repair_command(), learn_command()});
+  add("Keep it right", {diff_command(), bisect_command(), ledger_command(), calibrate_command()});
+  add("Bring a simulator of your own",
+      {adapter_check_command(), record_command(), replay_adapter_command()});
+  add("The program itself", {doctor_command(), diagnostics_command()});
+  add("The program itself", manual_commands(program, all));
+  add("", {worker_command(), supervise_command()});
+  return all;
+}
+
 std::int64_t memory_limit_mb = 0;  // for when nothing else is left; 0: none
 
 int run(int argc, char** argv) {
   OptionTable table("parallax", kDescription);
   table.footer(kFooter);
   CommonOptions options;
-  std::vector<Command> commands = {
-      run_command(),           repair_command(),       replay_command(),  suite_command(),
-      check_command(),         traces_command(),       compile_command(), verify_command(),
-      diagnostics_command(),   explain_command(),      fmt_command(),     diff_command(),
-      worker_command(),        rates_command(),        draw_command(),    supervise_command(),
-      coverage_command(),      monitor_command(),      report_command(),  learn_command(),
-      export_command(),        ledger_command(),       bisect_command(),  calibrate_command(),
-      prove_command(),         consequences_command(), confirm_command(), threshold_command(),
-      adapter_check_command(), new_command(),          record_command(),  replay_adapter_command(),
-      doctor_command()};
   Program program{
       table, fmt::format("parallax {} (CaDiCaL {})", kVersion, kCadicalVersion), true, {}};
+  auto commands = all_commands(program);
   for (auto& command : commands) {
     add_common_options(command.options, options);
     program.commands.push_back(&command.options);

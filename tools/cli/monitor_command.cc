@@ -124,11 +124,12 @@ Command monitor_command() {
       "Lines of a log: {\"t\": 1.5, \"event\": \"Go(bTable)\", \"outcome\": \"ok\"}\n"
       "                {\"t\": 1.6, \"state\": {\"robot.x\": 0.1}}\n"
       "Exit codes: 0 consistent, 1 not, 3 a line cannot be read, 4 undecided.");
-  command.option("scenario", options->scenario, "Scenario file (YAML)").required();
+  command.option("scenario", options->scenario, "Scenario file (YAML)").required().file({"yaml"});
   command
       .option("log", options->log,
               "Log (JSON lines or CSV), - for standard input, or the folder of a run")
-      .required();
+      .required()
+      .file();
   command
       .option("--unobserved", options->unobserved,
               "Event that may happen without being logged; may be given again")

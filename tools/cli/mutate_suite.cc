@@ -43,6 +43,7 @@ int mutate_suite(const std::vector<SuiteCase>& cases, const MutateOptions& optio
 }
 
 void add_mutate_options(OptionTable& command, MutateOptions& options) {
+  const UnderHeading heading(command, "Mutation");
   command.flag("--mutate", options.mutate,
                "Which single mistakes in its models and plans would the suite not notice? "
                "(docs/mutation.md)");

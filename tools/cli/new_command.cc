@@ -76,7 +76,8 @@ Command new_command() {
       "Worlds and their robots: line (line), room (mobile), kitchen (mobile).\n"
       "Exit codes: 0, 2 for a name that is taken or none, or a place that cannot be written.");
   command.option("name", options->folder, "Folder to make; its last part is the scenario's name")
-      .required();
+      .required()
+      .folder();
   command
       .option(
           "--world", options->world,

@@ -39,6 +39,12 @@ enum class ListForm {
   kOneEachTime,            // repeated; a word that follows is a positional argument
 };
 
+/// The heading of what every command has.
+inline constexpr const char* kGeneralHeading = "General";
+
+/// Where values come from that are no closed set: what a shell offers for them.
+enum class ValueSource { kWords, kFiles, kFolders, kPrograms };
+
 /// One option, flag or positional argument, as data. Declared by chaining:
 ///     table.option("--horizon", horizon, "Last timepoint").check(IntRange{0, 100});
 struct Option {
@@ -53,6 +59,10 @@ struct Option {
   std::string value_name = {};             // in the help, instead of the type
   std::vector<std::string> partners = {};  // options of the table without which this one is refused
   bool* was_given = nullptr;               // set after parsing
+  std::string heading = {};                // in the help, above it and its like
+  ValueSource source = ValueSource::kWords;
+  std::vector<std::string> endings = {};  // of the files; empty: any
+  std::vector<std::string> offered = {};  // words that a shell offers, beside others
 
   Option& required() { return is_required = true, *this; }
   /// The help shows what the target holds now.
@@ -62,6 +72,15 @@ struct Option {
   Option& named_value(std::string name) { return value_name = std::move(name), *this; }
   Option& needs(std::string other) { return partners.push_back(std::move(other)), *this; }
   Option& given(bool& flag) { return was_given = &flag, *this; }
+  /// The value is a file, whose name ends in one of these words behind a dot if there are some.
+  Option& file(std::vector<std::string> ends = {}) {
+    return source = ValueSource::kFiles, endings = std::move(ends), *this;
+  }
+  Option& folder() { return source = ValueSource::kFolders, *this; }
+  /// The value is a program, and what follows are its arguments.
+  Option& program() { return source = ValueSource::kPrograms, *this; }
+  Option& offers(std::vector<std::string> words) { return offered = std::move(words), *this; }
+  bool is_positional() const { return !names.starts_with('-'); }
 };
 
 /// The options of a program or of one of its commands. Targets outlive the parsing.
@@ -80,10 +99,17 @@ class OptionTable {
   void footer(std::string text) { footer_ = std::move(text); }
   /// Leaves the command out of the help.
   void hide() { hidden_ = true; }
+  /// What one does with the command: the help of the program lists it there.
+  const std::string& subject() const { return subject_; }
+  void set_subject(std::string text) { subject_ = std::move(text); }
+  /// Options that are added from here on stand below this heading. Returns the one before.
+  std::string heading(std::string text) { return std::exchange(heading_, std::move(text)); }
   /// The reference stays valid while the table lives.
   template <typename T>
   Option& option(std::string names, T& target, std::string help = "") {
-    return options_.emplace_back(Option{std::move(names), &target, std::move(help)});
+    auto& made = options_.emplace_back(Option{std::move(names), &target, std::move(help)});
+    made.heading = heading_;
+    return made;
   }
   template <typename T>
   Option& flag(std::string names, T& target, std::string help = "") {
@@ -93,9 +119,23 @@ class OptionTable {
   }
 
  private:
-  std::string name_, description_, footer_;
+  std::string name_, description_, footer_, subject_, heading_ = "Options";
   bool hidden_ = false;
   std::deque<Option> options_;
+};
+
+/// Options that are added while it lives stand below a heading of their own.
+class UnderHeading {
+ public:
+  UnderHeading(OptionTable& table, std::string text)
+      : table_(table), before_(table.heading(std::move(text))) {}
+  ~UnderHeading() { table_.heading(std::move(before_)); }
+  UnderHeading(const UnderHeading&) = delete;
+  UnderHeading& operator=(const UnderHeading&) = delete;
+
+ private:
+  OptionTable& table_;
+  std::string before_;
 };
 
 }  // namespace parallax::tools

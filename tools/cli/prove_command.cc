@@ -440,7 +440,8 @@ Command prove_command() {
       "`given` says; --simulate counts how often they do. What is open is left to simulation.\n"
       "Exit codes: 0 every test passes everywhere (--check: all confirmed), 1 refuted somewhere\n"
       "(--check: wrong), 4 some of it open, or nothing to prove.");
-  command.option("scenario", options->scenario, "Scenario file (YAML)").required();
+  command.option("scenario", options->scenario, "Scenario file (YAML)").required().file({"yaml"});
+  command.heading("What is proved");
   command.option("--trace", options->trace, "Which trace")
       .check(WholeNumber{1, 1'000'000})
       .show_default();
@@ -452,6 +453,7 @@ Command prove_command() {
               "sliding-rad, goal, goal-rad, parked, held, held-rad, held-height, lean [m, rad], or "
               "JOINT.q=LOW:HIGH")
       .list(ListForm::kOneEachTime);
+  command.heading("How far");
   command.option("--boxes", options->limits.boxes, "Boxes examined for each test, at most")
       .check(WholeNumber{1, 100'000'000})
       .show_default();
@@ -460,9 +462,14 @@ Command prove_command() {
               "Share of the start region that need not be decided")
       .check(FiniteNumber{0.0, 1.0})
       .show_default();
-  command.option("-o,--out", options->out, "Write the certificate, with every box, to this file");
-  command.option("--check", options->check,
-                 "Confirm every box of a certificate by the second evaluation alone");
+  command.heading("Certificate");
+  command.option("-o,--out", options->out, "Write the certificate, with every box, to this file")
+      .file();
+  command
+      .option("--check", options->check,
+              "Confirm every box of a certificate by the second evaluation alone")
+      .file();
+  command.heading("Comparison with simulations");
   command
       .option("--simulate", options->simulate,
               "Also simulate so many starts, and compare with the verdicts of their boxes")

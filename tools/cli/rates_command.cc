@@ -196,7 +196,8 @@ Command rates_command() {
       "Sample N starts as simulation N of `parallax run` with the same seed does.\n"
       "Exit codes: 0 estimated, 1 no trace, 4 stopped before all runs were made, or "
       "--runs did not resolve what was asked.");
-  command.option("scenario", options->scenario, "Scenario file (YAML)").required();
+  command.option("scenario", options->scenario, "Scenario file (YAML)").required().file({"yaml"});
+  command.heading("How many simulations");
   command.option("--trace", options->rates.trace, "Only this trace; default: all")
       .check(WholeNumber{1, 1'000'000});
   command
@@ -224,9 +225,11 @@ Command rates_command() {
               "the most, and no cause is told")
       .check(OneOf{{"counting", "importance", "splitting"}})
       .show_default();
+  command.heading("What is counted");
   command.flag("--cause-kinds", options->cause_kinds,
                "Also tell what kind of cause each is: always, region, random or simulator");
   add_judging_options(command, options->judging);
+  command.heading("How they run");
   command.option("--confidence", options->rates.confidence, "Confidence of each interval")
       .check(FiniteNumber{0.5, 0.999999})
       .show_default();
@@ -239,9 +242,12 @@ Command rates_command() {
       .given(options->launcher.jobs_given);
   add_launcher_options(command, options->launcher);
   SampleOutput::add_option(command, options->samples);
-  command.option("--plot", options->plot,
-                 "Also draw the rates, how they settle, and how they depend on the start: a page "
-                 "(.html)");
+  command.heading("What is written");
+  command
+      .option("--plot", options->plot,
+              "Also draw the rates, how they settle, and how they depend on the start: a page "
+              "(.html)")
+      .file();
   add_command_options(command, options->commands, true);
   return {std::move(command),
           [options](Invocation& invocation) { return run_rates(*options, invocation); }};

@@ -76,8 +76,9 @@ Command record_command() {
       "Exit codes: those of the command; 2 for a file that cannot be written.");
   command
       .option("command", options->command, "The simulator: a program and its arguments, behind --")
-      .required();
-  command.option("-o,--output", options->output, "File to write").required();
+      .required()
+      .program();
+  command.option("-o,--output", options->output, "File to write").required().file();
   return {std::move(command),
           [options](Invocation& invocation) { return run_record(*options, invocation); }};
 }
@@ -93,7 +94,7 @@ Command replay_adapter_command() {
       "loss (`not_recorded`). `parallax run` with the same seed asks the same.\n"
       "Exit codes: 0, 1 where the recorded simulator ended, 2 and 3 for a file that is no "
       "recording.");
-  command.option("file", *path, "What `parallax record` has written").required();
+  command.option("file", *path, "What `parallax record` has written").required().file();
   return {std::move(command),
           [path](Invocation& invocation) { return run_replay_adapter(*path, invocation); }};
 }

@@ -164,10 +164,13 @@ Command repair_command() {
       "  parallax repair out/plan2 --runs 40 --hosts lab.hosts\n"
       "  parallax repair out/plan2 --loop --out repaired\n"
       "Exit codes: 0 nothing to repair, or a proposal was applied; 1 proposals; 4 none was found.");
-  command.option("run_dir", options->repair.folder.folder, "The folder of a run").required();
+  command.option("run_dir", options->repair.folder.folder, "The folder of a run")
+      .required()
+      .folder();
   add_recorded_scenario_option(command, options->repair.folder.scenario);
   command.flag("--other-model", options->repair.other_model,
                "The scenario or its model may have changed since the run");
+  command.heading("Proposals");
   command.option("--limit", options->repair.limit, "Show so many proposals at most; 0: all found")
       .check(NonNegative{})
       .show_default();
@@ -177,6 +180,7 @@ Command repair_command() {
       .option("--apply", options->apply,
               "Write this proposal into the files of the model or the plan")
       .check(Positive{});
+  command.heading("Simulations that tell them apart");
   command
       .option("--runs", options->runs,
               fmt::format("Make at most so many simulations to tell proposals apart, counted with "
@@ -188,11 +192,13 @@ Command repair_command() {
       .show_default()
       .given(options->launcher.jobs_given);
   add_launcher_options(command, options->launcher);
+  command.heading("Repair after repair");
   command.flag("--loop", options->loop,
                "Apply the first proposal to a copy, run again, and so on, while the first is the "
                "only one of its rank");
   command.option("--out", options->out, "Of --loop: a new folder for copies, runs and the log")
-      .needs("--loop");
+      .needs("--loop")
+      .folder();
   command.option("--rounds", options->rounds, "Of --loop: at most so many")
       .check(WholeNumber{1, 1'000})
       .show_default()

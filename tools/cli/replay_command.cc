@@ -87,7 +87,7 @@ Command replay_command() {
       "  parallax replay out/edge --sample 1.4   simulation 4 of trace 1\n"
       "  parallax replay out/edge --sample 1.4 --record\n"
       "Exit codes: 0 identical, 1 differs, 3 the scenario has changed since.");
-  command.option("run_dir", options->run.folder, "Folder of a run").required();
+  command.option("run_dir", options->run.folder, "Folder of a run").required().folder();
   command.option("--sample", options->sample, "TRACE.SAMPLE; default: the first discrepancy");
   command.flag("--record", options->record,
                "Write what moves into the run folder, for `report` and `export`");

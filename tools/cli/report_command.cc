@@ -222,19 +222,27 @@ Command report_command() {
       "  parallax report out/before out/after -o comparison.html\n"
       "The page needs no network and can be read without scripts. Nothing is simulated for it.\n"
       "Exit codes: 0 written; what could not be shown is told on the page and on standard error.");
-  command.option("run_dirs", options->folders, "Folders of runs; of several, what differs");
-  command.option("-o,--out", options->out,
-                 "The page; default report.html in the run folder, comparison.html of several");
+  command.option("run_dirs", options->folders, "Folders of runs; of several, what differs")
+      .folder();
+  command
+      .option("-o,--out", options->out,
+              "The page; default report.html in the run folder, comparison.html of several")
+      .file({"html"});
+  command.heading("What is on the page");
   command.flag(
       "--explain", options->explain,
       "Say which axioms contradict the first discrepancy, as `parallax explain` does; always "
       "where that has been at the folder");
   command.flag("--repair", options->repair,
                "Propose changes of the model, as `parallax repair` does");
-  command.option("--history", options->history,
-                 "No run: draw a history of suites (`suite --history`) and say what changed");
-  command.option("--ledger", options->ledger,
-                 "Say what this file of known discrepancies has of the run (docs/ledger.md)");
+  command
+      .option("--history", options->history,
+              "No run: draw a history of suites (`suite --history`) and say what changed")
+      .file();
+  command
+      .option("--ledger", options->ledger,
+              "Say what this file of known discrepancies has of the run (docs/ledger.md)")
+      .file({"yaml"});
   command
       .option(
           "--property", options->properties,

@@ -283,8 +283,9 @@ Command run_command() {
       "  parallax run edge.yaml --search 40\n"
       "  parallax run edge.yaml --launcher 'srun -n1 -c1' --jobs 32\n"
       "Exit codes: 0 no discrepancy, 1 discrepancy, 4 inconclusive, as without a trace.");
-  command.option("scenario", options->scenario, "Scenario file (YAML)").required();
-  command.option("--out", options->out, "Run folder; default out/NAME, numbered if taken");
+  command.option("scenario", options->scenario, "Scenario file (YAML)").required().file({"yaml"});
+  command.heading("The run");
+  command.option("--out", options->out, "Run folder; default out/NAME, numbered if taken").folder();
   command.option("--seed", options->seed, "Seed of every random choice")
       .check(WholeNumber{0, kMaxSeed})
       .show_default();
@@ -301,6 +302,7 @@ Command run_command() {
                "Go on until every trace was simulated; in closed loop, until executions showed "
                "every behaviour of plan and model, or those that they did not show are rarer than "
                "epsilon. Includes --keep-going");
+  command.heading("What is claimed");
   command.option("--criterion", options->criterion, "When a trace has been tried enough")
       .check(OneOf{{"clean-runs", "anytime", "clopper-pearson", "paper", "paper-literal",
                     "paper-repaired"}});
@@ -311,6 +313,7 @@ Command run_command() {
           "share the error; the default) or per-trace (each by itself, in fewer runs)")
       .check(OneOf{{"all-traces", "per-trace"}});
   add_judging_options(command, options->judging);
+  command.heading("What is simulated");
   command
       .option("--execution", options->execution,
               "What is simulated: open-loop (the events of traces) or closed-loop (the plan "
@@ -321,12 +324,14 @@ Command run_command() {
               "Closed loop: where executions begin: uniform (in any initial state), or guided (at "
               "first where the model has a way to what no execution went through yet)")
       .check(OneOf{{"uniform", "guided"}});
+  command.heading("What is claimed");
   command.option("--confidence", options->confidence, "Confidence level C of the claim")
       .check(FiniteNumber{0.5, 0.999999});
   command.option("--epsilon", options->epsilon, "Discrepancy probability to exclude")
       .check(FiniteNumber{1e-6, 0.5});
   command.option("--max-runs", options->max_runs, "Simulations per trace before giving up")
       .check(WholeNumber{1, 1'000'000});
+  command.heading("Search");
   command
       .option(
           "--search", options->search,
@@ -339,8 +344,10 @@ Command run_command() {
               "cross-entropy, expected-improvement or descent")
       .check(OneOf{{"portfolio", "uniform", "sobol", "boundary", "cross-entropy",
                     "expected-improvement", "descent"}});
+  command.heading("Traces");
   command.option("--max-traces", options->max_traces, "Traces that are simulated at most")
       .check(WholeNumber{1, 1'000'000'000});
+  command.heading("What is kept");
   command
       .option(
           "--record", options->record,
@@ -348,10 +355,11 @@ Command run_command() {
           "clean ones of each trace) or none")
       .check(OneOf{{"all", "discrepancies", "none"}})
       .show_default();
+  SampleOutput::add_option(command, options->samples);
+  command.heading("Traces");
   add_hits_option(command, options->hits);
   command.flag("--split-initial", options->split_initial,
                "Try every initial state, not only every sequence of events");
-  SampleOutput::add_option(command, options->samples);
   add_command_options(command, options->commands, true);
   return {std::move(command),
           [options](Invocation& invocation) { return run_scenario(*options, invocation); }};

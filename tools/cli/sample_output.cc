@@ -13,9 +13,11 @@ bool is_csv(const std::string& path) { return path.ends_with(".csv"); }
 }  // namespace
 
 void SampleOutput::add_option(OptionTable& command, std::string& path) {
-  command.option("--samples", path,
-                 "Also write one row for each simulation to this file (.csv or .jsonl): start, "
-                 "outcome, cause, margins");
+  command
+      .option("--samples", path,
+              "Also write one row for each simulation to this file (.csv or .jsonl): start, "
+              "outcome, cause, margins")
+      .file({"csv", "jsonl"});
 }
 
 base::Status SampleOutput::check(Invocation& invocation) const {

@@ -28,13 +28,16 @@ std::vector<std::string> strategy_names() {
 }  // namespace
 
 Option& add_model_options(OptionTable& command, ModelOptions& options) {
+  const UnderHeading heading(command, "Model");
   auto& models = command
                      .option("models", options.models,
                              "Model files (.e), or one that `compile` wrote (.dec.cnf)")
-                     .required();
+                     .required()
+                     .file({"e", "dec.cnf", "yaml"});
   // One value each time, so that a model may follow.
   command.option("-I,--include", options.include_dirs, "Folder in which `load` looks")
-      .list(ListForm::kOneEachTime);
+      .list(ListForm::kOneEachTime)
+      .folder();
   command.option("--compat", options.compat, "Meaning of the 2005 reasoner where it differs")
       .check(OneOf{{"decreasoner"}});
   command.option("--horizon", options.horizon, "Last timepoint; replaces the range of `time`")
@@ -48,15 +51,20 @@ Option& add_model_options(OptionTable& command, ModelOptions& options) {
 }
 
 void add_plan_options(OptionTable& command, ModelOptions& options) {
+  const UnderHeading heading(command, "Plan");
   command
       .option("--plan", options.plan,
               "Plan to unroll with the models: a file (.lisp) or a folder, repeated in load order")
       .list(ListForm::kOneEachTime)
-      .needs("--bind");
-  command.option("--bind", options.bind, "What the plan's designators mean").needs("--plan");
+      .needs("--bind")
+      .file({"lisp"});
+  command.option("--bind", options.bind, "What the plan's designators mean")
+      .needs("--plan")
+      .file({"bind"});
   command.option("--plan-entry", options.plan_entry, "The plan's function to run").needs("--plan");
   command.option("--regions", options.regions, "Scenario whose regions the plan's poses lie in")
-      .needs("--plan");
+      .needs("--plan")
+      .file({"yaml"});
   command.option("--max-loop", options.max_loop, "Iterations of a loop that nothing static ends")
       .check(WholeNumber{1, 10'000})
       .show_default();
@@ -92,6 +100,7 @@ void add_hits_option(OptionTable& command, std::string& hits) {
 }
 
 void add_judging_options(OptionTable& command, JudgingOptions& options) {
+  const UnderHeading heading(command, "How observations are judged");
   command
       .option("--match", options.match,
               "What states are held against: the trace, or all that the model admits")
@@ -119,6 +128,7 @@ void add_cubes_option(OptionTable& command, std::int64_t& jobs) {
 }
 
 void add_search_options(OptionTable& command, SearchOptions& options) {
+  const UnderHeading heading(command, "Which traces");
   command.option("--limit", options.limit, "Stop after this many traces; 0: all")
       .check(NonNegative{})
       .show_default();
@@ -152,14 +162,17 @@ void add_search_options(OptionTable& command, SearchOptions& options) {
 }
 
 void add_listing_options(OptionTable& command, ListingOptions& options) {
+  const UnderHeading heading(command, "How they are listed");
   command
       .option("--format", options.format,
               "text (changes only), jsonl, itf (Informal Trace Format), csv, or decreasoner (as "
               "the 2005 reasoner prints models)")
       .check(OneOf{{"text", "jsonl", "itf", "csv", "decreasoner"}})
       .show_default();
-  command.option("--output", options.output,
-                 "With --format itf: a new folder, one file for each trace");
+  command
+      .option("--output", options.output,
+              "With --format itf: a new folder, one file for each trace")
+      .folder();
 }
 
 void add_certify_option(OptionTable& command, CertifyOption& option) {
@@ -167,18 +180,23 @@ void add_certify_option(OptionTable& command, CertifyOption& option) {
       .flag("--certify", option.file,
             "Write a DRAT proof that there are no other traces, and the formula it refutes "
             "(FILE.cnf), and check it; the usual FILE is the model's name with .drat")
-      .named_value("[=FILE]");
+      .named_value("[=FILE]")
+      .file();
 }
 
 void add_replay_options(OptionTable& command, ReplayTracesOptions& options) {
-  command.option("--replay", options.file,
-                 "Hold the traces of this file (jsonl or itf) against the model; exit 1 if one "
-                 "is no trace of it");
+  const UnderHeading heading(command, "Traces that are given");
+  command
+      .option("--replay", options.file,
+              "Hold the traces of this file (jsonl or itf) against the model; exit 1 if one "
+              "is no trace of it")
+      .file();
   command.flag("--other-model", options.other_model,
                "Replay traces of another model that has the same names");
 }
 
 void add_command_options(OptionTable& command, CommandPermission& permission, bool named) {
+  const UnderHeading heading(command, "Commands that a scenario names");
   command.flag("--allow-commands", permission.allow,
                named ? "Start the simulator's command even with --no-commands"
                      : "Start the command that a scenario names as its simulator");
@@ -225,8 +243,10 @@ harness::SimulatorFactory half_step_simulator(const ScenarioModel& loaded,
 }
 
 void add_recorded_scenario_option(OptionTable& command, std::string& scenario) {
-  command.option("--scenario", scenario,
-                 "Of a run folder: where its scenario lies; default: as its journal says");
+  command
+      .option("--scenario", scenario,
+              "Of a run folder: where its scenario lies; default: as its journal says")
+      .file({"yaml"});
 }
 
 base::Result<std::optional<harness::SampleId>> parse_sample_option(const std::string& text,

@@ -274,51 +274,72 @@ Command suite_command() {
       "  parallax suite scenarios --resume            goes on where a suite was ended\n"
       "  parallax suite scenarios/classics --mutate   which mistakes would it not notice?\n"
       "  parallax suite --merge out/1 out/2 --out out/all --junit suite.xml");
-  command.option("paths", options->paths, "Scenarios, manifests, or folders that hold some");
+  command.option("paths", options->paths, "Scenarios, manifests, or folders that hold some")
+      .file({"yaml"});
+  command.heading("Which cases");
   command.option("--only", options->only, "Only cases whose name (file:id) contains this");
   command.flag("--fast", options->fast,
                "Only expectations of models, and scenarios that say `fast: true`");
+  command.heading("Results");
   command.option("--out", options->out, "Folder of the runs, made anew, and the results")
-      .show_default();
-  command.option("--junit", options->junit, "Write a JUnit report to this file");
-  command.option("--markdown", options->markdown, "Write a summary in Markdown to this file");
+      .show_default()
+      .folder();
+  command.option("--junit", options->junit, "Write a JUnit report to this file").file();
+  command.option("--markdown", options->markdown, "Write a summary in Markdown to this file")
+      .file();
   command
       .option("--annotations", options->annotations,
               "Say on standard error what is wrong, as the runners of `github` read it")
       .check(OneOf{{"github"}});
+  command.heading("Parts of a suite, and suites that go on");
   command
       .option("--shard", options->shard,
               "Part I of N, as I/N; `env`: from a job array, a matrix or a parallel job")
       .show_default();
-  command.option("--merge", options->merge,
-                 "Put the results of shards (their --out folders) together; nothing is run");
+  command
+      .option("--merge", options->merge,
+              "Put the results of shards (their --out folders) together; nothing is run")
+      .folder();
   command.flag("--resume", options->resume,
                "Go on with the suite in --out: cases that finished, with the same files, stay");
   command.flag("--rerun-failed", options->rerun_failed,
                "Only cases that did not pass in the last suite with this --out");
+  command.heading("Cases that may fail");
   command.option("--retry", options->retries, "More attempts where a case does not pass")
       .check(WholeNumber{0, 100})
       .show_default();
-  command.option("--quarantine", options->quarantine,
-                 "A list of cases that may fail for now, each with its reason");
-  command.option("--ledger", options->ledger,
-                 "Known discrepancies: one that it does not know fails its case (docs/ledger.md)");
-  command.option("--history", options->history,
-                 "Append outcomes, rates and times to this file, and say what changed "
-                 "(docs/history.md)");
+  command
+      .option("--quarantine", options->quarantine,
+              "A list of cases that may fail for now, each with its reason")
+      .file({"yaml"});
+  command
+      .option("--ledger", options->ledger,
+              "Known discrepancies: one that it does not know fails its case (docs/ledger.md)")
+      .file({"yaml"});
+  command.heading("History");
+  command
+      .option("--history", options->history,
+              "Append outcomes, rates and times to this file, and say what changed "
+              "(docs/history.md)")
+      .file();
   command
       .option("--revision", options->revision,
               "What the line of the history is of; else the commit that git has checked out")
       .needs("--history");
-  command.option("--cache", options->cache,
-                 "Folder of passes that need not be run again; without it `cache` in --out");
+  command.heading("Cached passes");
+  command
+      .option("--cache", options->cache,
+              "Folder of passes that need not be run again; without it `cache` in --out")
+      .folder();
   command.flag("--no-cache", options->no_cache, "Run every case, and keep no result");
   command.option("--verify-cache", options->verify_cache,
                  "Run this share of the cached passes all the same (5%) and compare");
+  command.heading("Golden files");
   command.flag("--update-goldens", options->update_goldens,
                "Write the golden files of cases that are otherwise as expected");
   command.flag("--force", options->force, "Write golden files even where `CI` is set");
   add_command_options(command, options->commands, false);
+  command.heading("How they run");
   command.option("--seed", options->seed, "Seed of every run")
       .check(WholeNumber{0, kMaxSeed})
       .show_default();

@@ -131,7 +131,7 @@ Command supervise_command() {
   auto command = std::make_shared<std::vector<std::string>>();
   OptionTable table("supervise", "Run a command and end with it everything that it has started");
   table.hide();  // put before the commands of scenarios; not meant to be typed
-  table.option("command", *command).required();
+  table.option("command", *command).required().program();
   return {std::move(table), [command](Invocation&) { return supervise(*command); }};
 }
 

@@ -444,6 +444,7 @@ Command traces_command() {
       "  parallax traces domain.e --replay traces/trace_000001.itf.json");
   add_model_options(command, options->model);
   add_plan_options(command, options->model);
+  command.heading("Best traces");
   command
       .option("--minimize", options->model.minimize,
               "`count FORMULA` or `sum TERM: FORMULA` over their free variables: only traces for "
@@ -452,6 +453,7 @@ Command traces_command() {
   command.flag("--best", options->model.best,
                "The same with what the model's `minimize` statements say, in their order");
   add_search_options(command, options->search);
+  command.heading("What is told");
   command.flag("--count", options->count, "Print only the number of traces");
   command
       .option("--distinct", options->search.distinct,

@@ -334,13 +334,16 @@ Command verify_command() {
       "part.");
   add_model_options(command, options->model);
   add_plan_options(command, options->model);
+  command.heading("The property");
   command.option("--property", options->property, "Formula that should hold at all times")
       .required();
   add_certify_option(command, options->certify);
   add_cubes_option(command, options->jobs);
-  command.option("--ledger", options->ledger,
-                 "Also say which known discrepancies of this file the answer rests on "
-                 "(docs/ledger.md)");
+  command
+      .option("--ledger", options->ledger,
+              "Also say which known discrepancies of this file the answer rests on "
+              "(docs/ledger.md)")
+      .file({"yaml"});
   command.flag("--check", options->check,
                "Evaluate the model on the trace by independent means; exit 5 if it differs");
   return {std::move(command),

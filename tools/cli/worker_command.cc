@@ -90,13 +90,13 @@ Command worker_command() {
   auto options = std::make_shared<WorkerOptions>();
   OptionTable command("worker", "Serve the simulator of a scenario on standard input and output");
   command.hide();  // started by `run`; not meant to be typed
-  command.option("scenario", options->scenario).required();
+  command.option("scenario", options->scenario).required().file({"yaml"});
   command.option("--scenario-hash", options->hash);
   command.flag("--half-step", options->half_step, "Simulate with half the scenario's step");
   command.flag("--elsewhere", options->elsewhere,
                "For another machine: whatever simulator the scenario names, in a process of its "
                "own; says first who it is, and gives signs of life");
-  command.option("--folder", options->folder, "Of --elsewhere: paths start here");
+  command.option("--folder", options->folder, "Of --elsewhere: paths start here").folder();
   command.option("--world-hash", options->world_hash, "Of --elsewhere: of a world that is a model");
   command.option("--world-horizon", options->world_horizon, "Of --elsewhere: likewise, of the run")
       .check(WholeNumber{0, 1'000'000});
