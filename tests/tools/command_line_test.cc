@@ -164,5 +164,29 @@ TEST_CASE("help and version are answers, not errors") {
   CHECK(contains(special.output, "--proof [=FILE]"));
 }
 
+TEST_CASE("help has options below their headings, commands below their subjects, itself last") {
+  Example example;
+  bool early = false;
+  bool late = false;
+  bool inner = false;
+  example.list.set_subject("Look");
+  CHECK(example.list.heading("First things") == "Options");
+  example.list.flag("--early", early, "Early");
+  {
+    const UnderHeading heading(example.list, "Inner things");
+    example.list.flag("--inner", inner, "Inner");
+  }
+  example.list.flag("--late", late, "Late");
+  CHECK(contains(example.parse({"--help"}).output, "\nLook:\n  list "));
+  const auto help = example.parse({"list", "--help"}).output;
+  const auto first = help.find("\nFirst things:\n  --early");
+  REQUIRE(first != std::string::npos);
+  CHECK(help.find("  --late", first) < help.find("\n\n", first + 1));
+  CHECK(contains(help, "\nInner things:\n  --inner"));
+  CHECK(contains(help, "\nOptions:\n  -I,--include"));
+  CHECK(help.find("\nGeneral:\n  -h,--help") > help.find("Inner things"));
+  CHECK_FALSE(contains(help, "\n\n\n"));
+}
+
 }  // namespace
 }  // namespace parallax::tools

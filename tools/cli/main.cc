@@ -68,6 +68,7 @@ int usage_error(const ParsedLine& line, std::string_view command, int argc, char
 /// By what one does with them, in the order in which one comes to it.
 std::vector<Command> all_commands(const Program& program) {
   std::vector<Command> all;
+  all.reserve(64);  // to grow is to copy every table
   const auto add = [&all](const char* subject, std::vector<Command> commands) {
     for (auto& command : commands) {
       command.options.set_subject(subject);

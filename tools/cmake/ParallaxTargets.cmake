@@ -145,6 +145,24 @@ function(parallax_install_library library)
   install(FILES ${made}.cmake ${made}Version.cmake ${modules}/FindCadical.cmake
     ${modules}/FindGmp.cmake ${modules}/FindOde.cmake DESTINATION ${config}
     COMPONENT development)
+  # The same for pkg-config. The libraries need each other in no order that a line could have.
+  set(PARALLAX_PC_LIBS "")
+  foreach(name ${below})
+    get_target_property(type ${name} TYPE)
+    if(type STREQUAL STATIC_LIBRARY)
+      string(APPEND PARALLAX_PC_LIBS " -l${name}")
+    endif()
+  endforeach()
+  set(PARALLAX_PC_MORE "-lcadical")
+  get_target_property(readers parallax_import COMPILE_DEFINITIONS)
+  if("PARALLAX_HAS_URDFDOM" IN_LIST readers)
+    string(APPEND PARALLAX_PC_MORE " -lurdfdom_model -lconsole_bridge")
+  endif()
+  file(RELATIVE_PATH PARALLAX_PC_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
+    ${CMAKE_INSTALL_PREFIX})
+  configure_file(${modules}/parallax.pc.in ${PROJECT_BINARY_DIR}/generated/parallax.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/generated/parallax.pc
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 endfunction()
 
 # parallax_program(NAME SOURCES a.cc ... DEPENDS lib ...): an executable, which is a layer as well.
