@@ -2,7 +2,7 @@
 # carries inside. Included when every library has been looked for.
 #
 # parallax_part(NAME DEBIAN_PACKAGE LICENCE HOW VERSION): HOW is CONTAINS (in the program's own bytes),
-# DYNAMIC_LINK (needed to start) or RUNTIME (loaded by a module, when a world in SDF is read).
+# DYNAMIC_LINK (needed to start) or RUNTIME (loaded by a module, when it is needed).
 set(PARALLAX_SPDX_PACKAGES "")
 set(PARALLAX_SPDX_RELATIONS "")
 set(PARALLAX_NOTICES "")
@@ -68,6 +68,13 @@ endif()
 if(TARGET parallax_sdf)
   parallax_part(libsdformat libsdformat-dev Apache-2.0 RUNTIME "")
   parallax_part(ignition-math libignition-math-dev Apache-2.0 RUNTIME "")
+endif()
+if(TARGET parallax_mesh)
+  parallax_part(Assimp libassimp-dev BSD-3-Clause RUNTIME "")
+  parallax_part(Qhull libqhull-dev Qhull RUNTIME "")
+endif()
+if(TARGET parallax_mujoco)
+  parallax_part(MuJoCo libmujoco-dev Apache-2.0 RUNTIME "")
 endif()
 parallax_part("GNU C Library" libc6-dev LGPL-2.1-or-later DYNAMIC_LINK "")
 parallax_part(libstdc++ libstdc++6 "GPL-3.0-or-later WITH GCC-exception-3.1" DYNAMIC_LINK
