@@ -12,6 +12,7 @@
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/quantiles.h"
+#include "harness/world/chain_arm.h"
 
 namespace parallax::harness {
 
