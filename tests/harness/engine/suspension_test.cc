@@ -13,7 +13,7 @@
 namespace parallax::harness {
 namespace {
 
-constexpr double kGravity_m_s2 = 9.81;
+constexpr double kPull_m_s2 = 9.81;
 constexpr double kBase_kg = 80.0;
 
 SuspensionSpec springs(double damping_n_s_m, double damping_nm_s) {
@@ -71,7 +71,7 @@ TEST_CASE("a load in the middle presses the base down by its weight over the sti
   spec.bodies.push_back(box_body("load", {0.2, 0.2, 0.1}, {0.0, 0.0, 0.55}, 12.0));
   Standing standing(spec);
   standing.run(3.0);
-  CHECK(standing.sag_m() == doctest::Approx(12.0 * kGravity_m_s2 / 40000.0).epsilon(0.01));
+  CHECK(standing.sag_m() == doctest::Approx(12.0 * kPull_m_s2 / 40000.0).epsilon(0.01));
   CHECK(standing.up().z() == doctest::Approx(1.0));
 }
 
@@ -83,7 +83,7 @@ TEST_CASE("a load at the side leans the base by its moment over the stiffness") 
   // Forwards, about y. The load's and the body's own heights add a little: 0.25 m and 0.2 m over
   // the middle that turns, at an angle of a fiftieth of a radian.
   const double lean_rad = std::atan2(standing.up().x(), standing.up().z());
-  CHECK(lean_rad == doctest::Approx(6.0 * kGravity_m_s2 * 0.35 / 6000.0).epsilon(0.03));
+  CHECK(lean_rad == doctest::Approx(6.0 * kPull_m_s2 * 0.35 / 6000.0).epsilon(0.03));
   CHECK(std::abs(standing.up().y()) < 1e-4);
 }
 
