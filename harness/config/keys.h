@@ -58,6 +58,7 @@ struct Key {
   static constexpr std::string_view kExecution = "execution";
   static constexpr std::string_view kFile = "file";
   static constexpr std::string_view kFixed = "fixed";
+  static constexpr std::string_view kEngine = "engine";
   static constexpr std::string_view kFluent = "fluent";
   static constexpr std::string_view kForms = "forms";
   static constexpr std::string_view kGained = "gained";

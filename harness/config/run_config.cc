@@ -5,6 +5,7 @@
 
 #include "compiler/base/codes/scenarios.h"
 #include "harness/config/sections.h"
+#include "harness/engine/mujoco_module.h"
 
 namespace parallax::harness {
 namespace {
@@ -129,31 +130,10 @@ CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink) {
   return criterion;
 }
 
-SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink) {
-  SimulatorSpec simulator;
-  simulator.source = node.range;
-  if (node.is_scalar()) {
-    if (node.text == "ode") return simulator;
-    auto error = sink.error(codes::kYamlUnknownChoice, node.range, node.text, Key::kSimulator);
-    const std::vector<std::string> known = {"ode"};
-    add_suggestion(error, node.text, known, "known, besides `command: [...]` and `model: FILE`");
-    return simulator;
-  }
-  YamlFields fields(node, key_text(Key::kSimulator), sink);
-  if (const auto* model = fields.find(Key::kModel)) {
-    fields.only({Key::kModel});
-    simulator.models = located_texts(*model, Key::kModel, sink);
-    return simulator;
-  }
-  fields.only({Key::kCommand, Key::kModel, Key::kHelloTimeoutS, Key::kResetTimeoutS,
-               Key::kActTimeoutS, Key::kObserveTimeoutS, Key::kCloseTimeoutS,
-               Key::kMinRealTimeFactor, Key::kRecycleAfter, Key::kMemoryMb});
-  fields.texts(Key::kCommand, simulator.command);
-  const auto* command = fields.find(Key::kCommand);
-  if (command != nullptr && command->is_list() && command->items.empty()) {
-    sink.error(codes::kWrongYamlKind, command->range, key_text(Key::kCommand), "empty",
-               "a list of a program and its arguments");
-  }
+namespace {
+
+/// What a simulator in a process of its own may take.
+void read_process_limits(YamlFields& fields, SimulatorSpec& simulator) {
   fields.number(Key::kHelloTimeoutS, kTimeout, simulator.hello_timeout_s);
   fields.number(Key::kResetTimeoutS, kTimeout, simulator.reset_timeout_s);
   fields.number(Key::kActTimeoutS, kTimeout, simulator.act_timeout_s);
@@ -162,6 +142,60 @@ SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink) {
   fields.number(Key::kMinRealTimeFactor, kPositive, simulator.min_real_time_factor);
   fields.integer(Key::kRecycleAfter, 0, kMaxRuns, simulator.recycle_after);
   fields.integer(Key::kMemoryMb, 0, 10'000'000, simulator.memory_mb);
+}
+
+/// Its name; reports one that is none, or that this program is without.
+void read_engine(const YamlNode& node, std::string_view key, const char* known_as,
+                 SimulatorSpec& simulator, base::DiagnosticSink& sink) {
+  std::vector<std::string> known;
+  for (const EngineKind kind : {EngineKind::kOde, EngineKind::kMujoco}) {
+    known.emplace_back(to_string(kind));
+    if (node.text != known.back()) continue;
+    simulator.engine = kind;
+    const std::string why = kind == EngineKind::kMujoco ? why_no_mujoco() : std::string();
+    if (!why.empty()) sink.error(codes::kEngineUnavailable, node.range, node.text, why);
+    return;
+  }
+  auto error = sink.error(codes::kYamlUnknownChoice, node.range, node.text, key);
+  add_suggestion(error, node.text, known, known_as);
+}
+
+}  // namespace
+
+SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink) {
+  SimulatorSpec simulator;
+  simulator.source = node.range;
+  if (node.is_scalar()) {
+    read_engine(node, Key::kSimulator, "known, besides `command: [...]` and `model: FILE`",
+                simulator, sink);
+    return simulator;
+  }
+  YamlFields fields(node, key_text(Key::kSimulator), sink);
+  if (const auto* model = fields.find(Key::kModel)) {
+    fields.only({Key::kModel});
+    simulator.models = located_texts(*model, Key::kModel, sink);
+    return simulator;
+  }
+  if (const auto* engine = fields.find(Key::kEngine)) {
+    fields.only({Key::kEngine, Key::kHelloTimeoutS, Key::kResetTimeoutS, Key::kActTimeoutS,
+                 Key::kObserveTimeoutS, Key::kCloseTimeoutS, Key::kMinRealTimeFactor,
+                 Key::kRecycleAfter, Key::kMemoryMb});
+    std::string name;
+    fields.text(Key::kEngine, name);  // reports what is no text
+    if (engine->is_scalar()) read_engine(*engine, Key::kEngine, "known", simulator, sink);
+    read_process_limits(fields, simulator);
+    return simulator;
+  }
+  fields.only({Key::kCommand, Key::kModel, Key::kEngine, Key::kHelloTimeoutS, Key::kResetTimeoutS,
+               Key::kActTimeoutS, Key::kObserveTimeoutS, Key::kCloseTimeoutS,
+               Key::kMinRealTimeFactor, Key::kRecycleAfter, Key::kMemoryMb});
+  fields.texts(Key::kCommand, simulator.command);
+  const auto* command = fields.find(Key::kCommand);
+  if (command != nullptr && command->is_list() && command->items.empty()) {
+    sink.error(codes::kWrongYamlKind, command->range, key_text(Key::kCommand), "empty",
+               "a list of a program and its arguments");
+  }
+  read_process_limits(fields, simulator);
   return simulator;
 }
 

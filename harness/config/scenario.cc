@@ -221,7 +221,8 @@ class ScenarioReader {
       }
     }
     if (world != nullptr) {
-      scenario.world = read_world(*world, sink_);
+      scenario.world =
+          read_world(*world, unknown ? EngineKind::kOde : scenario.simulator.engine, sink_);
       if (const auto* bodies = world->find(Key::kBodies)) {
         for (const auto& body : bodies->value.entries) {
           scenario.body_sources.emplace(body.key, body.key_range);

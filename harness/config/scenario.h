@@ -53,6 +53,7 @@ struct ActionBinding {
 struct SimulatorSpec {
   std::vector<std::string> command;  // of an external one
   std::vector<LocatedText> models;   // of a world that is a model
+  EngineKind engine = EngineKind::kOde;  // of the built-in one
   /// The built-in engine and its robots, which the world of the scenario is for.
   bool is_built_in() const { return command.empty() && models.empty(); }
   double hello_timeout_s = 60.0;

@@ -194,9 +194,10 @@ void warn_of_densities(const YamlNode& node, const WorldSpec& world, base::Diagn
 
 }  // namespace
 
-WorldSpec read_world(const YamlNode& node, base::DiagnosticSink& sink) {
+WorldSpec read_world(const YamlNode& node, EngineKind engine, base::DiagnosticSink& sink) {
   const auto errors_before = sink.error_count();
   WorldSpec world;
+  world.engine = engine;
   YamlFields fields(node, key_text(Key::kWorld), sink);
   fields.only({Key::kInclude, Key::kSolver, Key::kFriction, Key::kFloorMaterial, Key::kBodies,
                Key::kJoints, Key::kPlaces, Key::kRobot});

@@ -32,6 +32,7 @@ class TrialRunner {
 
 CheckUp try_solver(const TrialRunner& runner);
 CheckUp try_simulator(const TrialRunner& runner);
+CheckUp try_mujoco();
 CheckUp try_sdf();
 CheckUp try_urdf();
 /// Also that a hull can be made.

@@ -1,5 +1,6 @@
 #include "harness/config/scenario.h"
 
+#include "harness/engine/mujoco_module.h"
 #include "tests/harness/config/scenario_text.h"
 
 namespace parallax::harness::test {
@@ -120,6 +121,28 @@ expect: {verdict: discrepancy, iterations: 1, max_simulations: 20, fluents: [Box
   REQUIRE(scenario->expect.has_value());
   CHECK(scenario->expect->verdict == "discrepancy");
   CHECK(scenario->expect->fluents == std::vector<std::string>{"BoxIn(r1)"});
+}
+
+TEST_CASE("an engine is for the simulator and for its world, and one that is missing is refused") {
+  Workspace workspace;
+  for (const char* text :
+       {"simulator: mujoco\n", "simulator: {engine: mujoco, memory_mb: 200}\n"}) {
+    CAPTURE(text);
+    const auto scenario = workspace.load(std::string(kScenario) + text);
+    if (!has_mujoco()) {
+      CHECK_FALSE(scenario.has_value());
+      CHECK(workspace.reports().front().find("E5145") != std::string::npos);
+      CHECK(workspace.reports().front().find("libmujoco-dev") != std::string::npos);
+      continue;
+    }
+    REQUIRE(scenario.has_value());
+    CHECK(scenario->simulator.is_built_in());
+    CHECK(scenario->simulator.engine == EngineKind::kMujoco);
+    CHECK(scenario->world.engine == EngineKind::kMujoco);
+  }
+  const auto usual = workspace.load(kScenario);
+  REQUIRE(usual.has_value());
+  CHECK(usual->world.engine == EngineKind::kOde);
 }
 
 TEST_CASE("a criterion may be named by one word") {
