@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/engine/physics_world.h"
+
+namespace parallax::tools {
+
+/// A machine whose motion is known in closed form, or from its equations of motion solved by Runge
+/// and Kutta's method at a step so short that its own error does not show.
+struct Machine {
+  std::string name, held_against, unit;
+  /// How far its motion is off with this engine at steps of this length.
+  double (*error)(harness::EngineKind engine, double timestep_s);
+  double bound;  // of the error at steps of 2 ms, in every engine: what a test demands
+};
+
+/// A pendulum, a double pendulum, a block that slides, a door and a sphere that is thrown.
+const std::vector<Machine>& machines();
+
+}  // namespace parallax::tools
