@@ -20,6 +20,8 @@
 
 namespace parallax::harness {
 
+struct SecondOpinion;  // second_opinion.h
+
 enum class CampaignVerdict : std::uint8_t { kNoDiscrepancy, kDiscrepancy, kInconclusive };
 /// "no-discrepancy", "discrepancy", "inconclusive"
 std::string_view to_string(CampaignVerdict verdict);
@@ -175,6 +177,8 @@ struct CampaignResult {
   std::string replay_folder;  // run folder as the user wrote it
   std::vector<TraceResult> traces;
   std::vector<Discrepancy> discrepancies;
+  std::shared_ptr<const SecondOpinion>
+      second_opinion;                   // of another simulator; null: none was asked
   std::vector<CoverageShare> coverage;  // of what there is; none: it was not looked at
   std::int64_t simulations = 0;
   struct Timing {

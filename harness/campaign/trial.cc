@@ -285,6 +285,14 @@ std::optional<std::vector<std::map<compiler::FluentId, bool>>> compared_states(
 
 }  // namespace
 
+base::Known admitted_by_model(const Scenario& scenario, TraceFeed& feed, const CampaignTrace& trace,
+                              const Judgement& judgement) {
+  const auto observed = compared_states(judgement, scenario.comparison());
+  const bool open =
+      scenario.match_model && observed.has_value() && trace.other_outcomes == base::Known::kYes;
+  return open ? feed.admits(trace, *observed) : base::Known::kNo;
+}
+
 base::Result<std::optional<TrialSample>> Trial::observed(SampleRecord record) {
   const auto& scenario = bench_->scenario_;
   TrialSample sample;
@@ -301,10 +309,7 @@ base::Result<std::optional<TrialSample>> Trial::observed(SampleRecord record) {
   sample.verdict = SampleVerdict::kAsPredicted;
   const auto comparison = scenario.comparison();
   if (!judgement.matches(comparison)) {
-    const auto observed = compared_states(judgement, comparison);
-    const bool open = scenario.match_model && observed.has_value() &&
-                      plan_->trace->other_outcomes == base::Known::kYes;
-    const auto admitted = open ? bench_->feed_.admits(*plan_->trace, *observed) : base::Known::kNo;
+    const auto admitted = admitted_by_model(scenario, bench_->feed_, *plan_->trace, judgement);
     if (admitted == base::Known::kUndecided || bench_->stopped()) {
       return std::optional<TrialSample>();
     }

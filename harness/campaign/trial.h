@@ -114,6 +114,11 @@ struct TrialSample {
   Judgement judgement;  // of what was observed; of a lost one nothing is said
 };
 
+/// Does the model let the events of the trace lead through the compared states? Of a simulation
+/// that does not match the trace; undecided where the feed was stopped.
+base::Known admitted_by_model(const Scenario& scenario, TraceFeed& feed, const CampaignTrace& trace,
+                              const Judgement& judgement);
+
 /// As a row of a table; `cause` of a discrepancy, else null.
 SampleRow judged_row(const TrialSample& sample, Comparison comparison, const Cause* cause);
 

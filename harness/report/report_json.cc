@@ -5,6 +5,7 @@
 #include "harness/campaign/result_json.h"
 #include "harness/report/discrepancy_summary.h"
 #include "harness/report/law_json.h"
+#include "harness/report/opinion_words.h"
 #include "harness/report/report.h"
 #include "harness/report/text_layout.h"
 #include "harness/simulator/state_json.h"
@@ -280,6 +281,9 @@ Json json_of(const CampaignResult& result, bool with_timing) {
     for (const auto& share : result.coverage) {
       out["coverage"][share.group] = {{"covered", share.covered}, {"all", share.all}};
     }
+  }
+  if (result.second_opinion) {
+    out["second_opinion"] = base::parse_ordered_json(opinion_json(*result.second_opinion));
   }
   out["exploration"] = result.exploration;
   if (!result.bounds.empty()) out["bounds"] = result.bounds;

@@ -9,6 +9,7 @@
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/family.h"
 #include "harness/report/discrepancy_summary.h"
+#include "harness/report/opinion_words.h"
 #include "harness/report/report.h"
 #include "harness/report/report_words.h"
 #include "harness/report/text_layout.h"
@@ -35,6 +36,7 @@ class Summary {
     paths();
     causes();
     shown();
+    opinion();
     notes();
     context();
     pointers();
@@ -281,6 +283,18 @@ class Summary {
     line("made", text);
     line("criterion", criterion_text(result_.criterion, result_.spending));
     if (!result_.coverage.empty()) line("covered", coverage_shares_text(result_));
+  }
+
+  void opinion() {
+    if (!result_.second_opinion) return;
+    const auto sentences = opinion_sentences(*result_.second_opinion);
+    for (std::size_t i = 0; i < sentences.size(); ++i) {
+      line(i == 0 ? name_of_other() : "", sentences[i]);
+    }
+  }
+  std::string name_of_other() const {
+    const auto& other = result_.second_opinion->other;
+    return "in " + other.substr(0, other.find(' '));
   }
 
   /// Not wrapped: commands are to be copied.

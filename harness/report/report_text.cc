@@ -8,6 +8,7 @@
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/family.h"
+#include "harness/report/opinion_words.h"
 #include "harness/report/report.h"
 #include "harness/report/report_words.h"
 #include "harness/report/text_layout.h"
@@ -404,6 +405,11 @@ class TextReport {
       line("covered",
            fmt::format("{}; `parallax coverage {}` names the rest", coverage_shares_text(result_),
                        shell_word(result_.replay_folder)));
+    }
+    if (result_.second_opinion) {
+      out_ += fmt::format("\nsecond opinion of {}\n", result_.second_opinion->other);
+      for (const auto& sentence : opinion_sentences(*result_.second_opinion)) line("", sentence);
+      out_ += '\n';
     }
     if (result_.traces.empty() && !result_.interrupted) {
       line("note", "no trace, so nothing was compared");

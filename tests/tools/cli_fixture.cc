@@ -37,10 +37,12 @@ CliFixture::~CliFixture() {
 
 ProcessResult CliFixture::parallax(std::vector<std::string> arguments,
                                    ProcessOptions options) const {
-  arguments.insert(arguments.begin(), std::string(PARALLAX_BINARY_DIR) + "/parallax");
+  arguments.insert(arguments.begin(), program());
   if (options.folder.empty()) options.folder = folder_.string();
   return run_process(arguments, options);
 }
+
+std::string CliFixture::program() { return std::string(PARALLAX_BINARY_DIR) + "/parallax"; }
 
 void CliFixture::write(const std::string& name, const std::string& text) const {
   std::ofstream(folder_ / name, std::ios::binary) << text;

@@ -19,6 +19,8 @@ class CliFixture {
 
   /// `parallax ARGS...` in the folder.
   ProcessResult parallax(std::vector<std::string> arguments, ProcessOptions options = {}) const;
+  /// Where the program lies.
+  static std::string program();
   void write(const std::string& name, const std::string& text) const;
   std::string read(const std::string& name) const;
   /// Replaces the one occurrence of `from` in a file.

@@ -19,6 +19,7 @@
 #include "tools/cli/launcher_options.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/sample_output.h"
+#include "tools/cli/second_opinion_option.h"
 #include "tools/cli/shared_options.h"
 
 namespace parallax::tools {
@@ -75,6 +76,7 @@ struct RunOptions {
   std::string hits = "first";
   bool split_initial = false;
   std::string samples;
+  OpinionOptions opinion;
   CommandPermission commands;
   LauncherOptions launcher;
 };
@@ -143,7 +145,8 @@ struct Ran {
 };
 
 Ran run_open(const ScenarioModel& loaded, const harness::SimulatorFactory& simulator,
-             const harness::CampaignOptions& campaign, Invocation& invocation) {
+             const harness::CampaignOptions& campaign, OpinionOfRun* opinion,
+             Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto& model = loaded.compilation.model;
   if (!model.has_constraints) {
@@ -152,8 +155,14 @@ Ran run_open(const ScenarioModel& loaded, const harness::SimulatorFactory& simul
   EnumeratedTraces traces(model, invocation,
                           {.all_hits = campaign.all_hits, .split_initial = campaign.split_initial});
   traces.explain_absence_by([&] { return reasons_for_absence(loaded, invocation); });
+  if (opinion != nullptr && !opinion->start(traces.symbols(), campaign)) {
+    return {sink.already_reported()};
+  }
   auto result =
       harness::run_campaign(loaded.scenario, traces, simulator, campaign, invocation.files(), sink);
+  if (opinion != nullptr && result && !opinion->ask(traces, *result)) {
+    return {sink.already_reported()};
+  }
   return {std::move(result), traces.solve_calls()};
 }
 
@@ -192,13 +201,19 @@ base::Status check_closed(const RunOptions& options, const harness::Scenario& sc
 
 Ran run_closed(const RunOptions& options, const ScenarioModel& loaded,
                const harness::SimulatorFactory& simulator, const harness::CampaignOptions& campaign,
-               Invocation& invocation) {
+               OpinionOfRun* opinion, Invocation& invocation) {
   auto& sink = invocation.sink();
   if (!check_closed(options, loaded.scenario, sink)) return {sink.already_reported()};
   auto loop = ClosedLoop::make(loaded, invocation);
   if (!loop) return {sink.already_reported()};
+  if (opinion != nullptr && !opinion->start((*loop)->symbols(), campaign)) {
+    return {sink.already_reported()};
+  }
   auto result = harness::run_loop_campaign(loaded.scenario, **loop, simulator, campaign,
                                            invocation.files(), sink);
+  if (opinion != nullptr && result && !opinion->ask_about_executions(*result)) {
+    return {sink.already_reported()};
+  }
   return {std::move(result), (*loop)->solve_calls()};
 }
 
@@ -235,9 +250,12 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   SampleOutput samples(options.samples);
   if (!samples.check(invocation)) return 0;
   campaign.on_sample = samples.listener();
+  const auto opinion = OpinionOfRun::of(options.opinion, *loaded, invocation);
+  if (!opinion) return 0;
+  if (*opinion) campaign.on_sample = (*opinion)->listener(std::move(campaign.on_sample));
   const bool closed = loaded->scenario.execution == Execution::kClosedLoop;
-  auto ran = closed ? run_closed(options, *loaded, *simulator, campaign, invocation)
-                    : run_open(*loaded, *simulator, campaign, invocation);
+  auto ran = closed ? run_closed(options, *loaded, *simulator, campaign, opinion->get(), invocation)
+                    : run_open(*loaded, *simulator, campaign, opinion->get(), invocation);
   auto& result = ran.result;
   if (campaign.progress) write_error("\r\x1b[K");
   if (!report_fleet(*workers, invocation) || !result) return 0;
@@ -281,6 +299,7 @@ Command run_command() {
       "  parallax run edge.yaml --seed 7 --out out/edge7 --resume\n"
       "  parallax run edge.yaml --keep-going --samples edge.csv\n"
       "  parallax run edge.yaml --search 40\n"
+      "  parallax run edge.yaml --second-opinion mujoco\n"
       "  parallax run edge.yaml --launcher 'srun -n1 -c1' --jobs 32\n"
       "Exit codes: 0 no discrepancy, 1 discrepancy, 4 inconclusive, as without a trace.");
   command.option("scenario", options->scenario, "Scenario file (YAML)").required().file({"yaml"});
@@ -360,6 +379,8 @@ Command run_command() {
   add_hits_option(command, options->hits);
   command.flag("--split-initial", options->split_initial,
                "Try every initial state, not only every sequence of events");
+  command.heading("Second opinion");
+  add_opinion_options(command, options->opinion);
   add_command_options(command, options->commands, true);
   return {std::move(command),
           [options](Invocation& invocation) { return run_scenario(*options, invocation); }};

@@ -24,6 +24,7 @@ namespace {
 
 struct WorkerOptions {
   std::string scenario, hash;
+  std::string engine;  // empty: as the scenario says
   bool half_step = false;
   bool elsewhere = false;  // what follows is of such a worker
   std::string folder, world_hash;
@@ -79,6 +80,9 @@ int serve_scenario(const WorkerOptions& options, Invocation& invocation) {
   if (options.elsewhere) {
     return serve_elsewhere(options, {*std::move(scenario), {}, {}, hash}, invocation);
   }
+  for (const auto one : {harness::EngineKind::kOde, harness::EngineKind::kMujoco}) {
+    if (options.engine == to_string(one)) scenario->world.engine = one;
+  }
   if (options.half_step) scenario->world.solver.timestep_s /= 2.0;
   harness::OdeSimulator simulator(scenario->world);
   return harness::serve(simulator, STDIN_FILENO, STDOUT_FILENO) == 0 ? 0 : kPeerGone;
@@ -92,6 +96,8 @@ Command worker_command() {
   command.hide();  // started by `run`; not meant to be typed
   command.option("scenario", options->scenario).required().file({"yaml"});
   command.option("--scenario-hash", options->hash);
+  command.option("--engine", options->engine, "Simulate with this engine")
+      .check(OneOf{{"ode", "mujoco"}});
   command.flag("--half-step", options->half_step, "Simulate with half the scenario's step");
   command.flag("--elsewhere", options->elsewhere,
                "For another machine: whatever simulator the scenario names, in a process of its "

@@ -244,6 +244,10 @@ bool add_report(const std::string& source, PageData& page) {
           {group, std::to_string(whole(share, "covered")), std::to_string(whole(share, "all"))});
     }
   }
+  if (const auto* opinion = base::json_member(report, "second_opinion")) {
+    page.opinion_of = text(*opinion, "other");
+    page.opinion_sentences = texts(*opinion, "words");
+  }
   if (page.interrupted) {
     page.banners.push_back("The run was interrupted: what is claimed is what it had come to.");
   }

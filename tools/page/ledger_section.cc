@@ -69,4 +69,13 @@ std::string ledger_section(const PageData& page) {
   return section_of("ledger", "Known discrepancies", out);
 }
 
+std::string opinion_section(const PageData& page) {
+  if (page.opinion_sentences.empty()) return {};
+  auto out = "<p>The same starts, simulated by " + html_short(page.opinion_of) + ":</p>\n<ul>\n";
+  for (const auto& sentence : page.opinion_sentences) {
+    out += "<li>" + html_short(sentence) + ".</li>\n";
+  }
+  return section_of("opinion", "Second opinion", out + "</ul>\n");
+}
+
 }  // namespace parallax::tools

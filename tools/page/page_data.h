@@ -270,6 +270,8 @@ struct PageData {
   std::optional<PageLedger> ledger;
   std::optional<PageBlame> blame;
   std::vector<PageFinding> findings;
+  std::string opinion_of;                      // another simulator: "mujoco 2.2.2"
+  std::vector<std::string> opinion_sentences;  // what that said
   std::vector<PageProof> proofs;
   std::optional<PageRule> rule;
   std::vector<PageProposal> proposals;

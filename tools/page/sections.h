@@ -55,6 +55,8 @@ std::string scatter_section(const PageData& page);
 std::string motion_section(const PageData& page);
 std::string confidence_section(const PageData& page);
 std::string ledger_section(const PageData& page);
+/// What another simulator made of the run.
+std::string opinion_section(const PageData& page);
 /// What was proved about starts.
 std::string proof_section(const PageData& page);
 std::string blame_section(const PageData& page, const SourceLinks& links);

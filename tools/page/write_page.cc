@@ -69,6 +69,7 @@ std::string run_page(const PageData& page, const DocumentOptions& options) {
   // why.
   const std::vector<Part> parts = {
       {"discrepancy", "Where they part", discrepancy_section(page, links)},
+      {"opinion", "Second opinion", opinion_section(page)},
       {"ledger", "Ledger", ledger_section(page)},
       {"timeline", "Timeline", timeline_section(page)},
       {"motion", "Motion", motion_section(page)},

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/campaign/second_opinion.h"
+
+namespace parallax::harness {
+
+/// What two simulators make of the discrepancies of one cause.
+struct CauseOpinion {
+  enum class Doubt : std::uint8_t {
+    kModel,      // both disagree with it, wherever the other one answered
+    kSimulator,  // only the first does, wherever the other one answered
+    kEither,     // now so, now so
+    kNoAnswer
+  };
+  std::string cause;
+  std::int64_t both = 0, only = 0, unanswered = 0;
+  std::vector<std::string> others;     // what the other one's discrepancies come of, each once
+  std::string why_unanswered;          // of the first
+  std::int64_t trace = 0, sample = 0;  // the first
+  Doubt doubt() const;
+};
+/// "model", "simulator", "either", "no-answer"
+std::string_view to_string(CauseOpinion::Doubt doubt);
+
+/// In the order in which the causes came.
+std::vector<CauseOpinion> opinions_by_cause(const SecondOpinion& opinion);
+
+/// A sentence for each cause, and one about the clean simulations.
+std::vector<std::string> opinion_sentences(const SecondOpinion& opinion);
+
+/// The member `second_opinion` of the report, as the text of a JSON object.
+std::string opinion_json(const SecondOpinion& opinion);
+
+}  // namespace parallax::harness
