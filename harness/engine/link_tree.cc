@@ -28,6 +28,7 @@ Eigen::Vector3d unit_moments_m2(const BodyShape& shape) {
   const double r2 = 0.25 * size.x() * size.x(), h = size.z();
   switch (shape.form) {
     case ShapeForm::kBox:
+    case ShapeForm::kHull:  // of its box; what uses trees refuses hulls (check_world)
       break;
     case ShapeForm::kSphere:
       return Eigen::Vector3d::Constant(0.4 * r2);

@@ -35,6 +35,8 @@ const char* word_of(ShapeForm form) {
       return "cylinder";
     case ShapeForm::kCapsule:
       return "capsule";
+    case ShapeForm::kHull:  // refused by check_world
+      break;
   }
   return "";
 }
@@ -226,6 +228,7 @@ Eigen::Vector3d engine_size_m(ShapeForm form, const Eigen::Vector3d& size_m) {
   const double radius_m = 0.5 * size_m.x();
   switch (form) {
     case ShapeForm::kBox:
+    case ShapeForm::kHull:
       break;
     case ShapeForm::kSphere:
       return {radius_m, radius_m, radius_m};

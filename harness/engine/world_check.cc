@@ -252,15 +252,31 @@ void check_grippers(const WorldSpec& spec, ProblemList& problems) {
   if (spec.mobile) GripperChecker(spec, problems).run();
 }
 
+/// What MuJoCo has no words for, or is not told here.
+void check_for_mujoco(const WorldSpec& spec, ProblemList& problems) {
+  if (const auto problem = mujoco_problem(spec)) {
+    problems.add("joints/" + problem->joint, problem->message + "; MuJoCo needs one");
+  }
+  for (const BodySpec& body : spec.bodies) {
+    const bool has_hull =
+        std::any_of(body.shapes.begin(), body.shapes.end(),
+                    [](const BodyShape& shape) { return shape.form == ShapeForm::kHull; });
+    if (has_hull) {
+      problems.add("bodies/" + body.name, "hulls and meshes are simulated by ODE alone");
+    }
+  }
+  for (const JointSpec& joint : spec.joints) {
+    if (joint.suspension) {
+      problems.add("joints/" + joint.name, "a base on springs is simulated by ODE alone");
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<WorldProblem> check_world(const WorldSpec& spec) {
   ProblemList problems(check_structure(spec));
-  if (spec.engine == EngineKind::kMujoco && problems.empty()) {
-    if (const auto problem = mujoco_problem(spec)) {
-      problems.add("joints/" + problem->joint, problem->message + "; MuJoCo needs one");
-    }
-  }
+  if (spec.engine == EngineKind::kMujoco && problems.empty()) check_for_mujoco(spec, problems);
   if (problems.empty()) check_geometry(spec, problems);
   if (problems.empty()) check_grippers(spec, problems);
   if (problems.empty()) check_overlaps(spec, problems);
