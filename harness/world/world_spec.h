@@ -130,7 +130,7 @@ struct SolverSpec {
   std::optional<double> contact_erp, contact_cfm;  // of contacts, where they differ
   double surface_layer_m = 0.001;
   double max_correcting_velocity_m_s = 1.0;
-  double start_penetration_m = 0.002;  // deeper at reset: invalid start
+  double start_penetration_m = 0.002;      // deeper at reset: invalid start
   std::int64_t max_contacts_per_pair = 8;  // of two shapes
   // Of two bodies, among those with the same normal; none: as many as their shapes have.
   std::optional<std::int64_t> max_contacts_per_side;
