@@ -160,5 +160,22 @@ TEST_CASE("notices of what the program carries are in its copyright file") {
   }
 }
 
+TEST_CASE("where it was built is not in the program: the same bytes come of any folder") {
+  const CliFixture cli;
+  const auto doctor = nlohmann::json::parse(cli.parallax({"doctor", "--json"}).out);
+  if (doctor.at("build").at("type") != "Release") {
+    MESSAGE("no release: what debuggers read names folders");
+    return;
+  }
+  const std::string build = PARALLAX_BINARY_DIR;
+  for (const auto& binary : {build + "/parallax", build + "/modules/parallax_sdf.so"}) {
+    if (!std::filesystem::exists(binary)) continue;
+    const auto bytes = text_of(binary);
+    CHECK(bytes.size() > 100000);
+    CHECK_MESSAGE(bytes.find(PARALLAX_SOURCE_DIR) == std::string::npos, binary);
+    CHECK_MESSAGE(bytes.find(build) == std::string::npos, binary);
+  }
+}
+
 }  // namespace
 }  // namespace parallax::test
