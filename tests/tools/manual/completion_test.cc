@@ -51,10 +51,14 @@ class Bash : public Completions {
   /// What it would offer for the last of these words.
   Words offers(const std::vector<std::string>& line) const {
     std::vector<std::string> command = {
-        "bash", "--norc", "--noprofile", "-c",
+        "bash",
+        "--norc",
+        "--noprofile",
+        "-c",
         "source scripts/bash; COMP_WORDS=(\"$@\"); COMP_CWORD=$((${#COMP_WORDS[@]} - 1));"
         "COMPREPLY=(); _parallax; printf '%s\\n' \"${COMPREPLY[@]}\"",
-        "bash", "parallax"};
+        "bash",
+        "parallax"};
     command.insert(command.end(), line.begin(), line.end());
     const auto result = run(command);
     CHECK(result.code == 0);
@@ -67,8 +71,7 @@ TEST_CASE("bash: the commands, and those that begin so") {
   const Bash bash;
   const auto listed = listed_commands(bash.cli);
   CHECK(bash.offers({""}) == Words(listed.begin(), listed.end()));
-  CHECK(bash.offers({"re"}) ==
-        Words{"record", "repair", "replay", "replay-adapter", "report"});
+  CHECK(bash.offers({"re"}) == Words{"record", "repair", "replay", "replay-adapter", "report"});
   CHECK(bash.offers({"--v"}) == Words{"--version"});
   CHECK(bash.offers({"worke"}).empty());
 }
@@ -131,9 +134,9 @@ TEST_CASE("bash: behind -- stands a program, and then what it takes") {
 class Fish : public Completions {
  public:
   Words offers(const std::string& line) const {
-    const auto result = run({"/usr/bin/env", "HOME=" + cli.folder().string() + "/sub", "fish",
-                             "--no-config", "-c",
-                             "source scripts/fish; complete -C " + quoted("parallax " + line)});
+    const auto result =
+        run({"/usr/bin/env", "HOME=" + cli.folder().string() + "/sub", "fish", "--no-config", "-c",
+             "source scripts/fish; complete -C " + quoted("parallax " + line)});
     CHECK(result.code == 0);
     CHECK(result.err.empty());
     Words words;
@@ -190,9 +193,8 @@ class Zsh : public Completions {
     std::filesystem::remove(file);
     cli.write("home/driver", kDriver);
     cli.write("home/inner", kInner);
-    const auto result =
-        run({"/usr/bin/env", "HOME=" + (cli.folder() / "home").string(), "TERM=dumb", "zsh", "-f",
-             "home/driver", "parallax " + line});
+    const auto result = run({"/usr/bin/env", "HOME=" + (cli.folder() / "home").string(),
+                             "TERM=dumb", "zsh", "-f", "home/driver", "parallax " + line});
     CAPTURE(result.out);
     CAPTURE(result.err);
     CHECK(result.code == 0);
