@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/simulator/simulator.h"
@@ -38,6 +39,7 @@ class MotionTap final : public Simulator {
     return outcome;
   }
   State observe() override { return inner_.observe(); }
+  void announce(const AnnouncedActs& acts) override { inner_.announce(acts); }
 
   /// Since the last reset.
   const MotionLog& log() const { return log_; }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "harness/campaign/sample_record.h"
 #include "harness/simulator/simulator.h"
@@ -31,6 +32,8 @@ class ActionSource {
   /// The next action, after what `record` has of outcomes and observations; none: that was all.
   /// What it points to lasts until the next call.
   virtual const ActionCall* next(SampleRecord& record) = 0;
+  /// All actions, where they are known before anything was seen; null: they are not.
+  virtual const std::vector<ActionCall>* known() const { return nullptr; }
 };
 
 /// Puts the simulator into the record's start and takes one action after the other: reset, observe,

@@ -28,6 +28,7 @@ class Attempt {
     record_.outcomes.clear();
     record_.reason.clear();
     record_.digest.clear();
+    announce();
     const auto reset = simulator_.reset(record_.initial, record_.seed);
     if (reset.status == SimStatus::kFailed || reset.status == SimStatus::kTruncated) {
       return ended(SimStatus::kLost, "reset answered " + std::string(to_string(reset.status)));
@@ -55,6 +56,18 @@ class Attempt {
   }
 
  private:
+  void announce() {
+    const auto* calls = actions_.known();
+    if (calls == nullptr) return;
+    simulator_.announce([calls] {
+      std::vector<AnnouncedAct> acts;
+      for (const ActionCall& call : *calls) {
+        acts.push_back({call.controller, call.arguments, call.time_limit_s});
+      }
+      return acts;
+    });
+  }
+
   /// A process may write any bytes to its standard error; the journal holds text.
   SimStatus ended(SimStatus status, const std::string& reason) {
     record_.reason = base::with_invalid_utf8_replaced(reason);
@@ -87,6 +100,7 @@ class CallList final : public ActionSource {
   const ActionCall* next(SampleRecord& /*record*/) override {
     return next_ < calls_.size() ? &calls_[next_++] : nullptr;
   }
+  const std::vector<ActionCall>* known() const override { return &calls_; }
 
  private:
   const std::vector<ActionCall>& calls_;

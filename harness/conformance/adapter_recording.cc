@@ -85,7 +85,7 @@ bool is_of_a_run(const std::string& method) { return method == "act" || method =
 
 /// What was done, once this was asked as well.
 std::uint64_t done_after(std::uint64_t done, const AskedRequest& asked) {
-  if (asked.method == "reset") return base::fnv1a64(asked.text);
+  if (asked.method == "reset" || asked.method == "perform") return base::fnv1a64(asked.text);
   return is_of_a_run(asked.method) ? base::fnv1a64(asked.text, done) : done;
 }
 

@@ -58,6 +58,9 @@ class Conformance {
   std::optional<Outcome> act(const TriedAction& action, double limit_s);
   std::optional<State> observe();
   std::optional<RunRecord> record(const State& start, std::uint64_t seed);
+  /// The same run by one request.
+  std::optional<RunRecord> performed(const State& start, std::uint64_t seed);
+  double act_timeout_s(double limit_s) const;
   void lost(const std::string& trouble);
   double time_slack_s() const { return 2.0 * report_.info.timestep_s; }
 
@@ -177,14 +180,18 @@ std::optional<Outcome> Conformance::reset(const State& start, std::uint64_t seed
   return outcome_of(ResetRequest{start, seed}, options_.process.reset_timeout_s);
 }
 
-std::optional<Outcome> Conformance::act(const TriedAction& action, double limit_s) {
+double Conformance::act_timeout_s(double limit_s) const {
   double factor = options_.process.min_real_time_factor;
   if (report_.info.min_real_time_factor > 0.0) {
     factor = std::min(factor, report_.info.min_real_time_factor);
   }
   const auto own = options_.process.act_timeout_s;
-  const auto timeout = own > 0.0 ? own : kActOverhead_s + limit_s / factor;
-  auto outcome = outcome_of(ActRequest{action.controller, action.arguments, limit_s}, timeout);
+  return own > 0.0 ? own : kActOverhead_s + limit_s / factor;
+}
+
+std::optional<Outcome> Conformance::act(const TriedAction& action, double limit_s) {
+  auto outcome =
+      outcome_of(ActRequest{action.controller, action.arguments, limit_s}, act_timeout_s(limit_s));
   if (outcome && !outcome->margins.empty()) has_margins_ = true;
   return outcome;
 }
@@ -230,6 +237,41 @@ std::optional<RunRecord> Conformance::record(const State& start, std::uint64_t s
     run.states.push_back(*std::move(state));
   }
   return run;
+}
+
+std::optional<RunRecord> Conformance::performed(const State& start, std::uint64_t seed) {
+  if (!connect()) return std::nullopt;
+  PerformRequest asked;
+  double timeout_s = options_.process.reset_timeout_s + options_.process.observe_timeout_s;
+  asked.requests.emplace_back(ResetRequest{start, seed});
+  asked.requests.emplace_back(ObserveRequest{});
+  for (const auto& action : actions_) {
+    timeout_s += act_timeout_s(action.time_limit_s) + options_.process.observe_timeout_s;
+    asked.requests.emplace_back(
+        ActRequest{action.controller, action.arguments, action.time_limit_s});
+    asked.requests.emplace_back(ObserveRequest{});
+  }
+  const auto reply = ask(asked, timeout_s);
+  if (!reply) return std::nullopt;
+  const auto* done = std::get_if<PerformReply>(&*reply);
+  if (done == nullptr) {
+    fault("it says that it can `perform` and refuses it");
+    return std::nullopt;
+  }
+  RunRecord run;
+  for (const auto& one : done->replies) {
+    if (const auto* outcome = std::get_if<OutcomeReply>(&one)) {
+      run.outcomes.push_back(outcome->outcome);
+    } else if (const auto* state = std::get_if<ObserveReply>(&one)) {
+      run.states.push_back(state->state);
+    } else {
+      fault("a `perform` of what was fine before gave the error " + std::get<ErrorReply>(one).code);
+      return std::nullopt;
+    }
+  }
+  if (done->replies.size() == asked.requests.size()) return run;
+  fault("a `perform` of what was fine before breaks off");
+  return std::nullopt;
 }
 
 bool Conformance::check_handshake() {
@@ -428,6 +470,15 @@ void Conformance::check_determinism() {
   if (!after_other) return skip(now_, "no second run came to its end");
   const auto in_process = difference_of(*first_, *after_other, actions_, time_slack_s());
   difference.add(in_process);
+  // The same by one request. Poses and reasons aside, nothing may differ but what always does.
+  if (report_.info.can("perform") && report_.info.determinism == "bitwise") {
+    const auto at_once = performed(starts_.front(), kSeeds[0]);
+    const auto other =
+        at_once ? difference_of(*first_, *at_once, actions_, time_slack_s()) : RunDifference{};
+    if (other.kind != RunDifference::Kind::kNone) {
+      fault("`perform` gives another result than its requests one by one: " + other.where);
+    }
+  }
   // In another process, while the first one lives and stands at a start.
   const auto begun = reset(starts_.back(), kSeeds[0]);
   const auto standing = begun && is_ready(*begun) ? observe() : std::nullopt;

@@ -54,7 +54,7 @@ Clock::time_point after(double seconds) {
 
 std::string_view method_name(const RequestBody& body) {
   static constexpr std::string_view kNames[] = {"hello", "reset",    "act", "observe",
-                                                "close", "describe", "?"};
+                                                "close", "describe", "?",   "perform"};
   return kNames[body.index()];
 }
 
@@ -296,6 +296,7 @@ void ProcessSimulator::lose(std::string reason) {
   constexpr double kEndGraceS = 0.2;
   lost_reason_ = link_->lose(std::move(reason), kEndGraceS);
   link_.reset();
+  ahead_.clear();
 }
 
 bool ProcessSimulator::ensure_started() {
@@ -367,25 +368,84 @@ Outcome ProcessSimulator::reset(const State& initial, std::uint64_t seed) {
   ++resets_;
   const double interval_s = info_.scene ? record_interval_s_ : 0.0;
   poses_.begin(info_.scene ? &*info_.scene : nullptr, interval_s);
+  ahead_.clear();
+  auto acts = std::exchange(announced_, {});
+  if (!acts.empty() && info_.can("perform")) {
+    return perform({initial, seed, interval_s}, std::move(acts));
+  }
   return outcome_of(link_->ask(ResetRequest{initial, seed, interval_s}, options_.reset_timeout_s));
+}
+
+double ProcessSimulator::act_timeout_s(double sim_time_limit_s) const {
+  if (options_.act_timeout_s > 0.0) return options_.act_timeout_s;
+  // The slower of what the scenario and the simulator say.
+  double factor = options_.min_real_time_factor;
+  if (info_.min_real_time_factor > 0.0) factor = std::min(factor, info_.min_real_time_factor);
+  return kActOverheadS + sim_time_limit_s / factor;
+}
+
+Outcome ProcessSimulator::perform(ResetRequest reset, std::vector<AnnouncedAct> acts) {
+  PerformRequest asked;
+  asked.requests.emplace_back(std::move(reset));
+  asked.requests.emplace_back(ObserveRequest{});
+  double timeout_s = options_.reset_timeout_s + options_.observe_timeout_s;
+  for (AnnouncedAct& one : acts) {
+    timeout_s += act_timeout_s(one.sim_time_limit_s) + options_.observe_timeout_s;
+    asked.requests.emplace_back(
+        ActRequest{std::move(one.action), std::move(one.arguments), one.sim_time_limit_s});
+    asked.requests.emplace_back(ObserveRequest{});
+  }
+  auto reply = link_->ask(asked, timeout_s);
+  auto* body = std::get_if<ReplyBody>(&reply);
+  auto* performed = body == nullptr ? nullptr : std::get_if<PerformReply>(body);
+  if (performed == nullptr) return outcome_of(std::move(reply));
+  for (std::size_t i = 0; i < performed->replies.size(); ++i) {
+    ahead_.push_back({std::move(asked.requests[i]), std::move(performed->replies[i])});
+  }
+  auto first = std::move(ahead_.front().reply);
+  ahead_.pop_front();
+  return outcome_of(
+      std::visit([](auto&& one) { return ReplyBody(std::move(one)); }, std::move(first)));
+}
+
+std::optional<ReplyBody> ProcessSimulator::answered_ahead(const PerformedRequest& asked) {
+  auto& front = ahead_.front();
+  const auto* act = std::get_if<ActRequest>(&asked);
+  const auto* known = std::get_if<ActRequest>(&front.asked);
+  const bool same =
+      front.asked.index() == asked.index() &&
+      (act == nullptr || (act->action == known->action && act->arguments == known->arguments &&
+                          act->sim_time_limit_s == known->sim_time_limit_s));
+  if (!same) {
+    lose("something else was announced than is asked for");
+    return std::nullopt;
+  }
+  auto reply =
+      std::visit([](auto&& one) { return ReplyBody(std::move(one)); }, std::move(front.reply));
+  ahead_.pop_front();
+  return reply;
 }
 
 Outcome ProcessSimulator::act(std::string_view action, const State& arguments,
                               double sim_time_limit_s) {
   if (!link_) return {SimStatus::kLost, lost_reason_, 0.0, {}};
-  // The slower of what the scenario and the simulator say.
-  double factor = options_.min_real_time_factor;
-  if (info_.min_real_time_factor > 0.0) factor = std::min(factor, info_.min_real_time_factor);
-  const double timeout_s = options_.act_timeout_s > 0.0 ? options_.act_timeout_s
-                                                        : kActOverheadS + sim_time_limit_s / factor;
-  return outcome_of(
-      link_->ask(ActRequest{std::string(action), arguments, sim_time_limit_s}, timeout_s));
+  ActRequest asked{std::string(action), arguments, sim_time_limit_s};
+  if (!ahead_.empty()) {
+    auto reply = answered_ahead(asked);
+    if (!reply) return {SimStatus::kLost, lost_reason_, 0.0, {}};
+    return outcome_of(*std::move(reply));
+  }
+  return outcome_of(link_->ask(std::move(asked), act_timeout_s(sim_time_limit_s)));
 }
 
 State ProcessSimulator::observe() {
   const auto lost = [&] { return State{{std::string(kLostVariable), lost_reason_}}; };
   if (!link_) return lost();
-  auto reply = link_->ask(ObserveRequest{}, options_.observe_timeout_s);
+  const bool is_there = !ahead_.empty();
+  auto known = is_there ? answered_ahead(ObserveRequest{}) : std::nullopt;
+  if (is_there && !known) return lost();
+  auto reply = known ? std::variant<ReplyBody, std::string>(*std::move(known))
+                     : link_->ask(ObserveRequest{}, options_.observe_timeout_s);
   if (auto* body = std::get_if<ReplyBody>(&reply)) {
     if (auto* observed = std::get_if<ObserveReply>(body)) return std::move(observed->state);
     const auto& error = std::get<ErrorReply>(*body);

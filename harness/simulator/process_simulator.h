@@ -5,7 +5,9 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -108,14 +110,28 @@ class ProcessSimulator final : public Simulator {
   Outcome act(std::string_view action, const State& arguments, double sim_time_limit_s) override;
   State observe() override;
   void record_motion(double interval_s) override { record_interval_s_ = interval_s; }
+  /// Once it has said that it can `perform`, the next reset asks for all of it in one request, and
+  /// what is asked for afterwards is answered from that.
+  void announce(const AnnouncedActs& acts) override {
+    if (info_.can("perform")) announced_ = acts();
+  }
 
  private:
   class Link;
+  using PerformedRequest = std::variant<ResetRequest, ActRequest, ObserveRequest>;
+  struct AnsweredAhead {
+    PerformedRequest asked;
+    SingleReply reply;
+  };
   bool ensure_started();
   bool ask_for_description();
   void close();
   void lose(std::string reason);
   Outcome outcome_of(std::variant<ReplyBody, std::string> reply);
+  double act_timeout_s(double sim_time_limit_s) const;
+  Outcome perform(ResetRequest reset, std::vector<AnnouncedAct> acts);
+  /// The answer that is there already; none, and a loss, where something else was asked.
+  std::optional<ReplyBody> answered_ahead(const PerformedRequest& asked);
 
   ProcessOptions options_;
   std::unique_ptr<Link> link_;  // null: no child is running
@@ -124,6 +140,8 @@ class ProcessSimulator final : public Simulator {
   std::int64_t resets_ = 0;  // of this child
   double record_interval_s_ = 0.0;
   PoseIntake poses_;
+  std::vector<AnnouncedAct> announced_;
+  std::deque<AnsweredAhead> ahead_;
 };
 
 }  // namespace parallax::harness

@@ -109,6 +109,14 @@ struct RequestEncoder {
   void operator()(const CloseRequest&) const { json["method"] = "close"; }
   void operator()(const DescribeRequest&) const { json["method"] = "describe"; }
   void operator()(const UnknownRequest& unknown) const { json["method"] = unknown.method; }
+  void operator()(const PerformRequest& perform) const {
+    OrderedJson list = OrderedJson::array();
+    for (const auto& request : perform.requests) {
+      std::visit(RequestEncoder{list.emplace_back(OrderedJson::object())}, request);
+    }
+    json["method"] = "perform";
+    json["params"] = OrderedJson{{"requests", std::move(list)}};
+  }
 };
 
 struct ReplyEncoder {
@@ -127,6 +135,13 @@ struct ReplyEncoder {
   void operator()(const DescribeReply& reply) const {
     json["result"] = OrderedJson{{"params", parameters_to_json(reply.info)},
                                  {"actions", actions_to_json(reply.info)}};
+  }
+  void operator()(const PerformReply& reply) const {
+    OrderedJson list = OrderedJson::array();
+    for (const auto& single : reply.replies) {
+      std::visit(ReplyEncoder{list.emplace_back(OrderedJson::object())}, single);
+    }
+    json["result"] = OrderedJson{{"replies", std::move(list)}};
   }
 };
 
@@ -461,15 +476,61 @@ OutcomeReply read_outcome(FieldReader& reader, const Json& result) {
   return reply;
 }
 
+ObserveReply read_observed(FieldReader& reader, const Json& result) {
+  ObserveReply reply;
+  if (const Json* state = reader.object(result, "state", true)) reply.state = reader.state(*state);
+  return reply;
+}
+
+/// Does it go on after that?
+bool is_last(const SingleReply& reply) {
+  if (std::holds_alternative<ErrorReply>(reply)) return true;
+  const auto* outcome = std::get_if<OutcomeReply>(&reply);
+  if (outcome == nullptr) return false;
+  const auto status = outcome->outcome.status;
+  return status != SimStatus::kOk && status != SimStatus::kFailed &&
+         status != SimStatus::kTruncated;
+}
+
+SingleReply read_single(FieldReader& reader, const Json& item, bool is_observation) {
+  if (const Json* error = reader.object(item, "error", false)) {
+    return ErrorReply{read_code(reader, *error), reader.string(*error, "message", false)};
+  }
+  const Json* result = reader.object(item, "result", true);
+  if (result == nullptr) return ErrorReply{};
+  if (is_observation) return read_observed(reader, *result);
+  return read_outcome(reader, *result);
+}
+
+PerformReply read_performed(FieldReader& reader, const Json& result, const PerformRequest& asked) {
+  PerformReply reply;
+  const Json* replies = reader.member(result, "replies", true);
+  if (replies == nullptr) return reply;
+  if (!replies->is_array() || replies->empty() || replies->size() > asked.requests.size()) {
+    reader.fail("`replies` is no list of an answer to each request");
+    return reply;
+  }
+  for (std::size_t i = 0; i < replies->size(); ++i) {
+    if (!(*replies)[i].is_object()) reader.fail("an element of `replies` is not an object");
+    if (reader.failed()) return reply;
+    const bool is_observation = std::holds_alternative<ObserveRequest>(asked.requests[i]);
+    reply.replies.push_back(read_single(reader, (*replies)[i], is_observation));
+    if (is_last(reply.replies.back()) && i + 1 < replies->size()) {
+      reader.fail("`replies` goes on after an answer that is the last one");
+    }
+  }
+  if (reply.replies.size() < asked.requests.size() && !is_last(reply.replies.back())) {
+    reader.fail("`replies` breaks off");
+  }
+  return reply;
+}
+
 ReplyBody read_result(FieldReader& reader, const Json& result, const Request& asked) {
   if (std::holds_alternative<HelloRequest>(asked.body)) return read_info(reader, result);
   if (std::holds_alternative<CloseRequest>(asked.body)) return CloseReply{};
-  if (std::holds_alternative<ObserveRequest>(asked.body)) {
-    ObserveReply reply;
-    if (const Json* state = reader.object(result, "state", true)) {
-      reply.state = reader.state(*state);
-    }
-    return reply;
+  if (std::holds_alternative<ObserveRequest>(asked.body)) return read_observed(reader, result);
+  if (const auto* perform = std::get_if<PerformRequest>(&asked.body)) {
+    return read_performed(reader, result, *perform);
   }
   if (std::holds_alternative<DescribeRequest>(asked.body)) {
     DescribeReply reply;

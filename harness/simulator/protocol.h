@@ -34,13 +34,19 @@ struct ActRequest {
 struct ObserveRequest {};
 struct CloseRequest {};
 struct DescribeRequest {};
+/// What would be asked for one after the other, in one request: a reset, then observations and
+/// acts. What follows on an answer that is no observation and not ok, failed or truncated is not
+/// asked.
+struct PerformRequest {
+  std::vector<std::variant<ResetRequest, ActRequest, ObserveRequest>> requests;
+};
 /// A well-formed request of a method that this version does not know.
 struct UnknownRequest {
   std::string method;
 };
 
 using RequestBody = std::variant<HelloRequest, ResetRequest, ActRequest, ObserveRequest,
-                                 CloseRequest, DescribeRequest, UnknownRequest>;
+                                 CloseRequest, DescribeRequest, UnknownRequest, PerformRequest>;
 
 /// `id` is the client's, counted up; a reply carries the id of its request.
 struct Request {
@@ -82,8 +88,13 @@ struct DescribeReply {
   SimulatorInfo info;
 };
 
-using ReplyBody =
-    std::variant<ErrorReply, HelloReply, OutcomeReply, ObserveReply, CloseReply, DescribeReply>;
+using SingleReply = std::variant<ErrorReply, OutcomeReply, ObserveReply>;
+struct PerformReply {
+  std::vector<SingleReply> replies;  // to the first requests, at least one, in their order
+};
+
+using ReplyBody = std::variant<ErrorReply, HelloReply, OutcomeReply, ObserveReply, CloseReply,
+                               DescribeReply, PerformReply>;
 
 /// A line that is not the protocol: the harness counts the simulator as lost.
 struct Malformed {

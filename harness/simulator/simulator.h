@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -89,6 +90,15 @@ struct SimulatorInfo {
   bool can(std::string_view capability) const;
 };
 
+/// An act that is going to be asked for.
+struct AnnouncedAct {
+  std::string action;
+  State arguments;
+  double sim_time_limit_s = 0.0;
+};
+
+using AnnouncedActs = std::function<std::vector<AnnouncedAct>()>;
+
 class RemoteSimulator;
 
 /// One simulated world. One instance per worker process, never shared.
@@ -102,6 +112,10 @@ class Simulator {
   /// From the next reset on outcomes tell what moved, with a frame every `interval_s` of simulated
   /// time in which something did; 0: no longer. One that cannot, or need not, does nothing.
   virtual void record_motion(double interval_s) { (void)interval_s; }
+  /// What will be asked for after the next reset, and after no other, as long as nothing is lost,
+  /// refused or given up: these acts, in this order, with an observation before the first one and
+  /// after each. One that is far away may do it all at once; one that is not does not even ask.
+  virtual void announce(const AnnouncedActs& acts) { (void)acts; }
   /// Puts the world into `initial` (settable parameters; others take their default) and seeds the
   /// engine's random numbers. kOk, kInvalidStart (the reason names the pair and the depth) or
   /// kLost; kUnsupported for an unknown parameter.

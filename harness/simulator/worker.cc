@@ -212,6 +212,10 @@ struct Dispatcher {
   }
   Answer operator()(const CloseRequest&) const { return {CloseReply{}, true}; }
   Answer operator()(const DescribeRequest&) const { return {DescribeReply{simulator.info()}}; }
+  /// `decode_request` takes it for unknown: a worker does not offer it.
+  Answer operator()(const PerformRequest&) const {
+    return {ErrorReply{"unsupported", "no method `perform`"}};
+  }
   Answer operator()(const UnknownRequest& unknown) const {
     return {ErrorReply{"unsupported", "no method `" + unknown.method + "`"}};
   }

@@ -121,6 +121,43 @@ TEST_CASE("replies survive the round trip") {
         "internal");
 }
 
+TEST_CASE("a run as one request: what is asked, and answers that are none") {
+  const Request asked{7,
+                      PerformRequest{{ResetRequest{{{"box.x", 0.5}}, 3}, ObserveRequest{},
+                                      ActRequest{"push", {{"by", 1.0}}, 30.0}, ObserveRequest{}}}};
+  CHECK(encode_request(asked) ==
+        R"({"id":7,"method":"perform","params":{"requests":[)"
+        R"({"method":"reset","params":{"state":{"box.x":0.5},"seed":3}},{"method":"observe"},)"
+        R"({"method":"act","params":{"action":"push","args":{"by":1.0},"sim_time_limit":30.0}},)"
+        R"({"method":"observe"}]}})");
+  const OutcomeReply fine{{SimStatus::kOk, "", 2.0, {}}},
+      failed{{SimStatus::kFailed, "no", 1.0, {}}},
+      invalid{{SimStatus::kInvalidStart, "`a` in `b`", 0.0, {}}};
+  const ObserveReply seen{kMixed};
+  const auto replies = [&](std::vector<SingleReply> list) {
+    return std::get<PerformReply>(round_trip(asked, PerformReply{std::move(list)})).replies;
+  };
+  const auto all = replies({fine, seen, failed, seen});
+  REQUIRE(all.size() == 4);
+  CHECK(std::get<OutcomeReply>(all[2]).outcome.reason == "no");
+  CHECK(std::get<ObserveReply>(all[3]).state == kMixed);
+  CHECK(replies({invalid}).size() == 1);
+  CHECK(std::get<ErrorReply>(replies({fine, ErrorReply{"internal", "x"}})[1]).message == "x");
+  const auto why = [&](std::vector<SingleReply> list) {
+    return malformed_message(encode_reply(7, PerformReply{std::move(list)}), asked);
+  };
+  CHECK(why({}) == "`replies` is no list of an answer to each request");
+  CHECK(why({fine, seen, fine, seen, seen}) == "`replies` is no list of an answer to each request");
+  CHECK(why({fine, seen, failed}) == "`replies` breaks off");
+  CHECK(why({invalid, seen}) == "`replies` goes on after an answer that is the last one");
+  CHECK(why({fine, fine}) == "`state` is missing");
+  CHECK(why({seen}) == "`status` is missing");
+  CHECK(malformed_message(R"({"id":7,"result":{}})", asked) == "`replies` is missing");
+  CHECK(malformed_message(R"({"id":7,"result":{"replies":[3]}})", asked) ==
+        "an element of `replies` is not an object");
+  CHECK(malformed_message(R"({"id":7,"result":{"replies":[{}]}})", asked) == "`result` is missing");
+}
+
 TEST_CASE("fields that are not known are ignored") {
   const auto decoded =
       decode_reply(R"({"id":2,"result":{"status":"ok","colour":[1,{"x":null}]},"later":true})",

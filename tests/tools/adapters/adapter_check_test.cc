@@ -138,6 +138,46 @@ constexpr Misbehaviour kMisbehaviours[] = {
      "    if method == 'reset': state['box.held'] = False",
      "actions", "now a boolean or text, now a number"}};
 
+constexpr const char* kPerforms =
+    "if method == 'hello': result['capabilities'].append('perform')\n"
+    "    if method == 'perform':\n"
+    "        parts = [(r['method'], r.get('params', {})) for r in params['requests']]\n"
+    "        result = {'replies': [{'result': json.loads(json.dumps(answer(*p)))} for p in "
+    "parts]}\n";
+
+TEST_CASE("a simulator that takes a run at once is held against its requests one by one") {
+  if (skipped_without_python()) return;
+  const std::string known = "\"observe\", \"close\")",
+                    wider = "\"observe\", \"close\", \"perform\")";
+  const auto report_with = [&](const std::string& fault) {
+    const CliFixture cli;
+    auto text = simulator_with(kPerforms + fault);
+    const auto at = text.find(known);
+    REQUIRE(at != std::string::npos);
+    cli.write("all.py", text.replace(at, known.size(), wider));
+    const auto result = cli.parallax(
+        {"adapter-check", "--json", "--request-limit", "5", "--", "python3", "-B", "all.py"});
+    CAPTURE(result.out);
+    REQUIRE(Json::accept(result.out));
+    return std::pair(result.code, result.out);
+  };
+  CHECK(report_with("").first == 0);
+  const std::pair<const char*, const char*> faults[] = {
+      {"        result['replies'][3]['result']['state']['box.x'] += 0.5\n",
+       "`perform` gives another result than its requests one by one: `box.x` after `push`"},
+      {"        result['replies'].pop()\n", "`replies` breaks off"},
+      {"        result = {}\n", "`replies` is missing"},
+      {"        result['replies'][1] = {}\n", "`result` is missing"},
+      {"        result['replies'][2]['result']['status'] = 'lost'\n",
+       "goes on after an answer that is the last one"}};
+  for (const auto& [fault, words] : faults) {
+    CAPTURE(fault);
+    const auto [code, out] = report_with(fault);
+    CHECK(code == 1);
+    CHECK(out.find(words) != std::string::npos);
+  }
+}
+
 std::vector<std::string> check_command(const std::string& file, const char* limit_s = "30") {
   return {"adapter-check", "--request-limit", limit_s, "--", "python3", "-B", file};
 }

@@ -1,6 +1,7 @@
 // `parallax record` and `parallax replay-adapter`: the simulator of a run, and its recording in its
 // place.
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/adapters/python_fixture.h"
@@ -44,7 +45,33 @@ TEST_CASE("a run is repeated from its recording, bit by bit, without the simulat
   // What was never asked is a loss, and says so.
   const auto other = python.parallax(with(rates, {"--seed", "2"}));
   CHECK(other.code == 4);
-  CHECK(other.err.find("the recording has no such `reset`") != std::string::npos);
+  CHECK(other.err.find("the recording has no such `perform`") != std::string::npos);
+}
+
+TEST_CASE("a run as one request gives the bytes of one request after the other") {
+  if (skipped_without_python()) return;
+  const auto outcome = [](const char* perform, std::size_t& requests) {
+    const PythonFixture python;
+    const std::string program = PARALLAX_PROGRAM;
+    python.replace("kinematic_2d.py", "noise=True,",
+                   std::string("noise=True, perform=") + perform + ",");
+    python.replace("kinematic_2d.yaml", command_line("python3, kinematic_2d.py"),
+                   command_line(program + ", record, -o, asked, --, python3, -B, kinematic_2d.py"));
+    const auto run = python.parallax({"run", "kinematic_2d.yaml", "--out", "out", "--json"});
+    const auto rates =
+        python.parallax({"rates", "kinematic_2d.yaml", "--runs", "40", "--samples", "s.csv"});
+    CAPTURE(run.err);
+    CHECK(run.code == 1);
+    CHECK(rates.code == 0);
+    const auto asked = python.read("asked");
+    requests = static_cast<std::size_t>(std::count(asked.begin(), asked.end(), '\n'));
+    CHECK((asked.find("\"method\":\"perform\"") != std::string::npos) ==
+          (std::string(perform) == "True"));
+    return run.out + rates.out + python.read("s.csv") + python.read("out/report.txt");
+  };
+  std::size_t few = 0, many = 0;
+  CHECK(outcome("True", few) == outcome("False", many));
+  CHECK(few * 5 < many);
 }
 
 TEST_CASE("a recording is appended to, and nothing else is touched") {

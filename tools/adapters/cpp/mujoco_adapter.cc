@@ -237,7 +237,7 @@ class Adapter {
             {"determinism", "bitwise"},
             {"seeds", true},
             {"time_step", world_.time_step()},
-            {"capabilities", {"describe", "margins", "noise", "poses"}},
+            {"capabilities", {"describe", "margins", "noise", "perform", "poses"}},
             {"pose", pose_scene()},
             {"params", described_params()},
             {"actions", {{{"name", "push"}}}}};
@@ -310,27 +310,50 @@ class Adapter {
   Pusher world_;
 };
 
-Json reply_to(Adapter& adapter, const std::string& line, bool& is_last) {
-  Json id;
-  const auto error = [&](const char* code, const std::string& text) {
-    return Json{{"id", id}, {"error", {{"code", code}, {"message", text}}}};
+/// `result` or `error`, of a request of its own or one of several.
+Json answered(Adapter& adapter, const Json& request);
+
+/// A run at once: a reset, observations and acts, up to the first that goes no further.
+Json performed(Adapter& adapter, const Json& requests) {
+  Json replies = Json::array();
+  for (const Json& one : requests) {
+    replies.push_back(answered(adapter, one));
+    const Json result = replies.back().value("result", Json::object());
+    const auto status = result.value("status", std::string("ok"));
+    const bool goes_on = status == "ok" || status == "failed" || status == "truncated";
+    if (replies.back().contains("error") || !goes_on) break;
+  }
+  return {{"replies", std::move(replies)}};
+}
+
+Json answered(Adapter& adapter, const Json& request) {
+  const auto error = [](const char* code, const std::string& text) {
+    return Json{{"error", {{"code", code}, {"message", text}}}};
   };
   try {
-    const Json request = Json::parse(line);
-    id = request.at("id");
     const auto method = request.at("method").get<std::string>();
-    is_last = method == "close";
-    return {{"id", id},
-            {"result", adapter.answer(method, request.value("params", Json::object()))}};
+    const Json params = request.value("params", Json::object());
+    if (method == "perform") return {{"result", performed(adapter, params.at("requests"))}};
+    return {{"result", adapter.answer(method, params)}};
   } catch (const Unsupported& why) {
     return error("unsupported", why.what());
-  } catch (const Json::parse_error& why) {
-    return error("parse_error", why.what());
   } catch (const Json::exception& why) {
     return error("invalid_params", why.what());
   } catch (const std::exception& why) {
     return error("internal", why.what());
   }
+}
+
+Json reply_to(Adapter& adapter, const std::string& line, bool& is_last) {
+  const Json request = Json::parse(line, nullptr, false);
+  if (!request.is_object() || !request.contains("id")) {
+    return {{"id", nullptr},
+            {"error", {{"code", "parse_error"}, {"message", "the line is no request"}}}};
+  }
+  Json reply = answered(adapter, request);
+  reply["id"] = request["id"];
+  is_last = request.value("method", Json()) == "close";
+  return reply;
 }
 
 }  // namespace

@@ -159,15 +159,17 @@ class _Action:
 class Adapter:
     """One simulated world. `determinism` is "bitwise", "tolerance" or "none" and says whether the
     same start and seed give the same result; `seeds` whether all randomness comes from the seed
-    (`sim.random` does). `noise` claims that results vary with it."""
+    (`sim.random` does). `noise` claims that results vary with it. Without `perform` each request is
+    made on its own."""
 
     def __init__(self, name, version="", determinism="none", seeds=True, noise=False,
-                 time_step=0.0, min_real_time_factor=None):
+                 time_step=0.0, min_real_time_factor=None, perform=True):
         if determinism not in ("bitwise", "tolerance", "none"):
             raise ValueError("determinism is bitwise, tolerance or none")
         self.name, self.version, self.determinism = name, version, determinism
         self.seeds, self.noise, self.time_step = seeds, noise, time_step
         self.min_real_time_factor = min_real_time_factor
+        self._performs = perform
         self.random = random.Random(0)  # seeded anew at each reset
         self.time = 0.0  # simulated seconds since reset
         self._params, self._actions = {}, {}
@@ -275,19 +277,46 @@ class Adapter:
             if type(request_id) is not int:
                 request_id = None
                 raise _Answer("invalid_request", "`id` is missing or no integer")
-            params = request.get("params", {})
-            if not isinstance(params, dict):
-                raise _Answer("invalid_params", "`params` is no object")
-            result = self._answer(method, params)
         except _Answer as error:
             return _error(request_id, error.code, str(error)), False
+        reply = {"id": request_id}
+        reply.update(self._answered(method, request.get("params", {})))
+        return reply, method == "close" and "result" in reply
+
+    def _answered(self, method, params):
+        """`result` or `error`, of a request of its own or one of several."""
+        try:
+            if not isinstance(params, dict):
+                raise _Answer("invalid_params", "`params` is no object")
+            return {"result": self._answer(method, params)}
+        except _Answer as error:
+            return _error(None, error.code, str(error), with_id=False)
         except Exception as error:  # a defect of the program: never an observation
             traceback.print_exc()
             text = "%s: %s" % (type(error).__name__, error)
-            return _error(request_id, "internal", text), False
-        return {"id": request_id, "result": result}, method == "close"
+            return _error(None, "internal", text, with_id=False)
+
+    def _performed(self, params):
+        """A reset, observations and acts at once, up to the first that goes no further."""
+        requests = params.get("requests")
+        if not isinstance(requests, list) or not requests or not all(
+            isinstance(one, dict) for one in requests
+        ):
+            raise _Answer("invalid_params", "`requests` is no list of objects")
+        methods = [one.get("method") for one in requests]
+        if methods[0] != "reset" or not set(methods[1:]) <= {"act", "observe"}:
+            raise _Answer("invalid_params", "`requests` is a reset, then acts and observations")
+        replies = []
+        for one in requests:
+            replies.append(self._answered(one["method"], one.get("params", {})))
+            status = replies[-1].get("result", {}).get("status", "ok")
+            if "error" in replies[-1] or status not in ("ok", "failed", "truncated"):
+                break
+        return {"replies": replies}
 
     def _answer(self, method, params):
+        if method == "perform" and self._performs:
+            return self._performed(params)
         if method == "hello":
             return self._hello(params)
         if method == "describe":
@@ -311,7 +340,7 @@ class Adapter:
                 "determinism": self.determinism, "seeds": self.seeds,
                 "time_step": self.time_step,
                 "capabilities": ["describe", "margins"] + (["noise"] if self.noise else [])
-                + (["poses"] if self._scene else [])}
+                + (["perform"] if self._performs else []) + (["poses"] if self._scene else [])}
         if self.min_real_time_factor is not None:
             said["min_real_time_factor"] = self.min_real_time_factor
         if self._scene:
@@ -435,16 +464,21 @@ def _parsed(line):
     return request
 
 
-def _error(request_id, code, message):
-    return {"id": request_id, "error": {"code": code, "message": message}}
+def _error(request_id, code, message, with_id=True):
+    error = {"error": {"code": code, "message": message}}
+    return dict({"id": request_id}, **error) if with_id else error
 
 
 def _line(reply):
     """One line of UTF-8. What is too long becomes an error, or is told without its poses."""
     text = json.dumps(reply, allow_nan=False, ensure_ascii=False).encode("utf-8", "replace")
-    if len(text) > MAX_LINE and "poses" in reply.get("result", {}):
-        reply["result"].pop("poses")
-        reply["result"]["motion_fault"] = "the poses of one action do not go in a line"
+    result = reply.get("result", {})
+    longest = [one for one in [result] + [one.get("result", {}) for one in result.get("replies", [])]
+               if "poses" in one]
+    if len(text) > MAX_LINE and longest:
+        for one in longest:
+            one.pop("poses")
+            one["motion_fault"] = "the poses do not go in a line"
         return _line(reply)
     if len(text) > MAX_LINE:
         text = json.dumps(_error(reply["id"], "line_too_long", "the reply is too long")).encode()
