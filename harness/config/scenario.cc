@@ -379,4 +379,16 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
   return scenario;
 }
 
+base::Result<WorldSpec> load_world(const std::filesystem::path& path, base::SourceFiles& files,
+                                   base::DiagnosticSink& sink, bool allow_outside) {
+  const auto errors_before = sink.error_count();
+  base::PathGate gate(allow_outside);
+  gate.admit_beside(path);
+  const auto root = load_yaml(path, gate, files, sink);
+  if (!root) return sink.already_reported();
+  WorldSpec world = read_world(*root, sink);
+  if (sink.error_count() != errors_before) return sink.already_reported();
+  return world;
+}
+
 }  // namespace parallax::harness

@@ -179,6 +179,10 @@ struct Scenario {
 base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,
                                      base::DiagnosticSink& sink, bool allow_outside = false);
 
+/// A file that holds what a scenario has under `world`: a robot, a building.
+base::Result<WorldSpec> load_world(const std::filesystem::path& path, base::SourceFiles& files,
+                                   base::DiagnosticSink& sink, bool allow_outside = false);
+
 /// May a file that does not load as a scenario be meant as a case of a suite? It is no YAML, it
 /// expects something or names a model, itself or by what it includes, or that cannot be read.
 bool may_be_case(const std::filesystem::path& path, bool allow_outside);

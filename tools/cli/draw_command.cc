@@ -14,6 +14,7 @@
 #include "harness/draw/action_recorder.h"
 #include "harness/draw/difference.h"
 #include "harness/draw/recorded_actions.h"
+#include "harness/draw/robot_drawing.h"
 #include "harness/draw/scene_svg.h"
 #include "harness/robot/ode_simulator.h"
 #include "tools/app/file_kind.h"
@@ -36,6 +37,7 @@ struct DrawOptions {
   std::string out;
   std::string sample, scenario;
   bool no_regions = false;
+  bool robot = false;
 };
 
 /// What stands above a picture.
@@ -116,6 +118,24 @@ int draw_start(const DrawOptions& options, Invocation& invocation) {
   const auto frame = harness::frame_around(pictures, svg.regions);
   Writer writer(invocation);
   if (writer.write(out, harness::scene_svg(pictures.front(), frame, svg))) writer.report({});
+  return 0;
+}
+
+/// The robot of a file that holds what a scenario has under `world`.
+int draw_robot(const DrawOptions& options, Invocation& invocation) {
+  auto& sink = invocation.sink();
+  const auto world =
+      harness::load_world(options.what, invocation.files(), sink, invocation.form().allow_outside);
+  if (!world) return 0;
+  if (harness::base_body(*world).empty()) {
+    sink.error_about(codes::kUsage, options.what, "the file has no `robot` to draw");
+    return 0;
+  }
+  const fs::path out = options.out.empty() ? fs::path("robot.svg") : fs::path(options.out);
+  if (!check_replaceable(out.string(), is_picture, invocation.files(), sink)) return 0;
+  Writer writer(invocation);
+  const auto title = fs::path(options.what).filename().string();
+  if (writer.write(out, harness::robot_svg(*world, title))) writer.report({});
   return 0;
 }
 
@@ -378,6 +398,7 @@ int draw_run(const DrawOptions& options, Invocation& invocation) {
 
 int draw(const DrawOptions& options, Invocation& invocation) {
   std::error_code error;
+  if (options.robot) return draw_robot(options, invocation);
   return fs::is_directory(options.what, error) ? draw_run(options, invocation)
                                                : draw_start(options, invocation);
 }
@@ -413,6 +434,8 @@ Command draw_command() {
                  "TRACE.SAMPLE of a run; default: the first discrepancy");
   add_recorded_scenario_option(command, options->scenario);
   command.flag("--no-regions", options->no_regions, "Leave the regions out");
+  command.flag("--robot", options->robot,
+               "The robot of a file as scenarios include it, with its frames and numbers");
   return {std::move(command),
           [options](Invocation& invocation) { return draw(*options, invocation); }};
 }
