@@ -386,7 +386,7 @@ base::Result<WorldSpec> load_world(const std::filesystem::path& path, base::Sour
   gate.admit_beside(path);
   const auto root = load_yaml(path, gate, files, sink);
   if (!root) return sink.already_reported();
-  WorldSpec world = read_world(*root, sink);
+  WorldSpec world = read_world(*root, EngineKind::kOde, sink);
   if (sink.error_count() != errors_before) return sink.already_reported();
   return world;
 }

@@ -51,8 +51,8 @@ struct ActionBinding {
 /// The simulator's command and how long it may take on the clock of the wall. An act may take
 /// `act_timeout_s` if that is positive, else 5 s + its simulated limit / min_real_time_factor.
 struct SimulatorSpec {
-  std::vector<std::string> command;  // of an external one
-  std::vector<LocatedText> models;   // of a world that is a model
+  std::vector<std::string> command;      // of an external one
+  std::vector<LocatedText> models;       // of a world that is a model
   EngineKind engine = EngineKind::kOde;  // of the built-in one
   /// The built-in engine and its robots, which the world of the scenario is for.
   bool is_built_in() const { return command.empty() && models.empty(); }

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "harness/draw/scene.h"
 #include "harness/draw/shown_text.h"
 #include "harness/world/shapes.h"
 #include "harness/world/world_layout.h"
@@ -17,7 +18,7 @@ namespace {
 
 constexpr double kPixels_m = 330.0;
 constexpr double kLine = 17.0, kGap = 30.0, kHead = 60.0;  // pixels
-constexpr double kFont_px = 12.0;
+constexpr double kLabelFont_px = 12.0;
 constexpr int kFacets = 20;
 
 struct Label {
@@ -47,53 +48,11 @@ Eigen::Isometry3d pose_of(const BodySpec& body) {
 
 /// Points whose hull is the shape, in its own frame.
 std::vector<Eigen::Vector3d> hull_points(const BodyShape& shape) {
-  const Eigen::Vector3d half = 0.5 * shape.size_m;
-  std::vector<Eigen::Vector3d> points;
-  if (shape.form == ShapeForm::kBox) {
-    for (int i = 0; i < 8; ++i) {
-      points.emplace_back((i & 1) != 0 ? half.x() : -half.x(), (i & 2) != 0 ? half.y() : -half.y(),
-                          (i & 4) != 0 ? half.z() : -half.z());
-    }
-    return points;
-  }
-  const double radius = half.x();
-  const bool flat = shape.form == ShapeForm::kCylinder;
-  const double end = flat ? half.z() : half.z() - radius;
-  for (int i = 0; i < kFacets; ++i) {
-    const double turn = 2.0 * std::numbers::pi * i / kFacets;
-    for (int j = 0; j <= (flat ? 0 : kFacets / 4); ++j) {
-      const double rise = 2.0 * std::numbers::pi * j / kFacets;
-      const double r = radius * std::cos(rise), z = end + radius * std::sin(rise);
-      for (const double side : {-1.0, 1.0}) {
-        points.emplace_back(r * std::cos(turn), r * std::sin(turn), side * z);
-      }
-    }
-  }
-  return points;
-}
-
-/// Andrew's monotone chain.
-std::vector<Eigen::Vector2d> hull(std::vector<Eigen::Vector2d> p) {
-  std::sort(p.begin(), p.end(), [](const auto& a, const auto& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
-  const auto turns = [](const Eigen::Vector2d& o, const Eigen::Vector2d& a,
-                        const Eigen::Vector2d& b) {
-    return (a - o).x() * (b - o).y() - (a - o).y() * (b - o).x();
-  };
-  std::vector<Eigen::Vector2d> out;
-  for (int pass = 0; pass < 2; ++pass) {
-    const std::size_t base = out.size();
-    for (const Eigen::Vector2d& q : p) {
-      while (out.size() >= base + 2 && turns(out[out.size() - 2], out.back(), q) <= 0.0) {
-        out.pop_back();
-      }
-      out.push_back(q);
-    }
-    out.pop_back();
-    std::reverse(p.begin(), p.end());
-  }
-  return out;
+  Probe probe;
+  probe.size_m = shape.size_m;
+  probe.form = shape.form;
+  probe.hull = shape.hull;
+  return outline_points(probe);
 }
 
 class RobotDrawing {
@@ -118,7 +77,7 @@ class RobotDrawing {
   std::string svg() {
     for (const View* view : {&side_, &top_}) {
       for (const Label& label : view->labels) {
-        column_ = std::max(column_, text_width_px(label.text, kFont_px) + kGap);
+        column_ = std::max(column_, text_width_px(label.text, kLabelFont_px) + kGap);
       }
     }
     const double width = 2.0 * column_ + kPixels_m * extent(side_).x() + 2.0 * kGap;

@@ -52,7 +52,8 @@ void add_circle_points(double radius_m, double z_m, std::vector<Eigen::Vector3d>
   }
 }
 
-/// Points of the surface, in the frame of the shape, whose hull looks like the shape.
+}  // namespace
+
 std::vector<Eigen::Vector3d> outline_points(const Probe& shape) {
   std::vector<Eigen::Vector3d> points;
   const Eigen::Vector3d half = 0.5 * shape.size_m;
@@ -79,8 +80,6 @@ std::vector<Eigen::Vector3d> outline_points(const Probe& shape) {
   }
   return points;
 }
-
-}  // namespace
 
 Scene scene_of(const PhysicsWorld& world, const WorldSpec& spec) {
   Scene scene;

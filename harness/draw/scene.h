@@ -116,6 +116,9 @@ Rectangle around(const std::vector<Eigen::Vector2d>& points);
 /// The part of a convex polygon within the rectangle (Sutherland and Hodgman 1974); empty: none is.
 std::vector<Eigen::Vector2d> clipped(std::vector<Eigen::Vector2d> polygon, const Rectangle& area);
 
+/// Points whose hull is the shape, or near it where it is round, in its own frame.
+std::vector<Eigen::Vector3d> outline_points(const Probe& shape);
+
 /// Convex hull, counter-clockwise (Andrew 1979).
 std::vector<Eigen::Vector2d> hull(std::vector<Eigen::Vector2d> points);
 

@@ -120,8 +120,8 @@ TEST_CASE(
                         {"hover_m", 0.15}});
     return std::hypot(robot.number("crate.x") - 0.88, robot.number("crate.y") - 0.2);
   };
-  // Forearm and hand weigh 3.5 kg, which takes 10.8 N m where the arm is carried, and 14 N m with the crate and
-  // the forearm level.
+  // Forearm and hand weigh 3.5 kg, which takes 10.8 N m where the arm is carried, and 14 N m with
+  // the crate and the forearm level.
   CHECK(short_m(30.0) < 0.02);
   CHECK(short_m(11.0) > 0.05);
 }
