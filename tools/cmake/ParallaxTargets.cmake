@@ -220,3 +220,11 @@ function(parallax_test name)
     add_dependencies(fast_tests ${name})
   endif()
 endfunction()
+
+# parallax_module(NAME): what is loaded while the program runs has all that it calls, which a linker does not ask
+# by itself. Sanitizers leave their own functions to the program.
+function(parallax_module name)
+  if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+    target_link_options(${name} PRIVATE -Wl,--no-undefined)
+  endif()
+endfunction()
