@@ -37,6 +37,7 @@ std::vector<std::string> types_of(const fs::path& header) {
   std::string space, line;
   std::ifstream in(header);
   while (std::getline(in, line)) {
+    line.erase(std::min(line.find("  //"), line.size()));
     std::smatch found;
     if (std::regex_match(line, found, opening)) space = found[1];
     const bool only_declares = line.ends_with(";") && line.find('{') == std::string::npos;
