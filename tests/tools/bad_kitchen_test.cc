@@ -47,7 +47,7 @@ TEST_CASE("a drawer that is longer than its bay") {
   cli.lay_over(
       "bodies: {drawer_mid: {shapes: [{size_m: [0.7, 0.4, 0.1], at_m: [0.1, 0, 0]}, "
       "{size_m: [0.016, 0.6, 0.016], at_m: [-0.325, 0, 0.05]}]}}");
-  check_refused(cli, "world.yaml:", "joints/dMid/range_m: `drawer_mid` meets `cabinet`");
+  check_refused(cli, "building.yaml:", "joints/dMid/range_m: `drawer_mid` meets `cabinet`");
 }
 
 TEST_CASE("a handle that no arm reaches") {
@@ -67,20 +67,20 @@ TEST_CASE("a handle far behind its drawer") {
 
 TEST_CASE("a region of the starts in the air") {
   const KitchenCopy cli;
-  cli.replace("kitchen/common.yaml", "start: {x: [1.41, 1.51], y: [0.06, 0.09], bottom: 0.85}",
+  cli.replace("kitchen/household.yaml", "start: {x: [1.41, 1.51], y: [0.06, 0.09], bottom: 0.85}",
               "start: {x: [1.41, 1.51], y: [0.06, 0.09], bottom: 0.865}");
-  check_refused(cli, "common.yaml:", "regions/pw1: nothing in the world is below");
+  check_refused(cli, "household.yaml:", "regions/pw1: nothing in the world is below");
 }
 
 TEST_CASE("a region of the goals outside the world") {
   const KitchenCopy cli;
-  cli.replace("kitchen/common.yaml", "pt4: {x: [-0.95, -0.72]", "pt4: {x: [-9.95, -9.72]");
-  check_refused(cli, "common.yaml:", "regions/pt4: nothing in the world reaches into it");
+  cli.replace("kitchen/household.yaml", "pt4: {x: [-0.95, -0.72]", "pt4: {x: [-9.95, -9.72]");
+  check_refused(cli, "household.yaml:", "regions/pt4: nothing in the world reaches into it");
 }
 
 TEST_CASE("a region of the robot that the plan's poses are not in") {
   const KitchenCopy cli;
-  cli.replace("kitchen/common.yaml", "bWork: {x: [0.64, 0.80]", "bWork: {x: [40.64, 40.80]");
+  cli.replace("kitchen/household.yaml", "bWork: {x: [0.64, 0.80]", "bWork: {x: [40.64, 40.80]");
   check_refused(cli, "plan2.lisp:", "lies outside all regions of `region`");
 }
 
@@ -108,7 +108,7 @@ TEST_CASE("numbers of actions beyond their bounds") {
 
 TEST_CASE("numbers of the plan beyond their bounds are known before the first simulation") {
   const KitchenCopy cli;
-  cli.replace("kitchen/common.yaml", "from_plan: {target: target, speed: max_speed_m_s}",
+  cli.replace("kitchen/household.yaml", "from_plan: {target: target, speed: max_speed_m_s}",
               "from_plan: {target.x: max_speed_m_s}");
   const auto result = cli.parallax({"run", "kitchen/plan2.yaml"});
   CAPTURE(result.err);
@@ -228,7 +228,7 @@ TEST_CASE("bodies that overlap whatever start is drawn") {
       "position_m: [-1.065, 1.69, 0.43]}}}",
       "overlay.yaml:2:", "occupies the same place as `table`");
   check_overlay_refused("world: {bodies: {drawer_mid: {position_m: [1.54, 0.90, 0.36]}}}",
-                        "world.yaml:", "overlaps `drawer_");
+                        "building.yaml:", "overlaps `drawer_");
   check_overlay_refused(
       "world: {bodies: {ball: {size_m: [0.1, 0.1, 0.1], mass_kg: 1, "
       "position_m: [-1.0, 1.5, 0.43]}}}",

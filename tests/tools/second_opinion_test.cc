@@ -24,7 +24,7 @@ std::string simulator_of(const std::string& scenario) {
 /// A world in which no box can be held.
 void write_slippery(const CliFixture& cli) {
   cli.write("slippery.yaml",
-            "include: edge.yaml\nname: oil on the pads\nworld: {friction: {box-pad: 0.01}}\n");
+            "include: scenario.yaml\nname: oil on the pads\nworld: {friction: {box-pad: 0.01}}\n");
 }
 
 Json opinion_of(const ProcessResult& ran) { return Json::parse(ran.out)["second_opinion"]; }
@@ -75,7 +75,6 @@ TEST_CASE(
   REQUIRE(ran.code == 1);
   const auto opinion = opinion_of(ran);
   REQUIRE(opinion["causes"].size() == 1);
-  // The box is put down at the border: clean there from most starts, and this start is one.
   CHECK(opinion["causes"][0]["doubt"] == "simulator");
   CHECK(opinion["causes"][0]["only_first"] == 1);
   CHECK(holds(cli.read("r/report.txt"), "only ode does"));
