@@ -43,8 +43,8 @@ class Scenarios : public CliFixture {
     replace("kitchen/true.e", "load common.e", "load true_common.e");
     const bool in_domain = read("kitchen/domain.e").find(from) != std::string::npos;
     replace(in_domain ? "kitchen/domain.e" : "kitchen/common.e", from, to);
-    const auto common = read("kitchen/common.yaml");
-    write("kitchen/common.yaml", common.substr(0, common.find("\nmapping:") + 1));
+    const auto common = read("kitchen/household.yaml");
+    write("kitchen/household.yaml", common.substr(0, common.find("\nmapping:") + 1));
     write("kitchen/own.yaml", "include: plan1.yaml\nsimulator: {model: true.e}\nexpect:\n");
     return "kitchen/own.yaml";
   }

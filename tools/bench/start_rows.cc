@@ -53,7 +53,7 @@ fs::path play_folder(const Bench& bench) {
     }
   }
   std::stringstream common;
-  common << std::ifstream(source / "scenarios/kitchen/common.yaml").rdbuf();
+  common << std::ifstream(source / "scenarios/kitchen/household.yaml").rdbuf();
   const auto text = common.str();
   std::ofstream(folder / "regions.yaml") << text.substr(0, text.find("\nmapping:") + 1);
   for (const auto& plan : kPlans) {
