@@ -110,10 +110,10 @@ class ProcessSimulator final : public Simulator {
   Outcome act(std::string_view action, const State& arguments, double sim_time_limit_s) override;
   State observe() override;
   void record_motion(double interval_s) override { record_interval_s_ = interval_s; }
-  /// Once it has said that it can `perform`, the next reset asks for all of it in one request, and
-  /// what is asked for afterwards is answered from that.
+  /// If it can `perform`, the next reset asks for all of it in one request, and what is asked for
+  /// afterwards is answered from that. What one can that is not running is known at the reset.
   void announce(const AnnouncedActs& acts) override {
-    if (info_.can("perform")) announced_ = acts();
+    if (link_ == nullptr || info_.can("perform")) announced_ = acts();
   }
 
  private:

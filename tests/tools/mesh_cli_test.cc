@@ -22,7 +22,8 @@ constexpr const char* kBlock =
 
 bool no_meshes(const CliFixture& cli) {
   const auto doctor = cli.parallax({"doctor", "--json"});
-  for (const auto& check : nlohmann::json::parse(doctor.out).at("checks")) {
+  const auto document = nlohmann::json::parse(doctor.out);
+  for (const auto& check : document.at("checks")) {
     if (check.at("name") == "meshes" && check.at("health") == "works") return false;
   }
   std::cout << "SKIPPED: this build reads no meshes\n";
@@ -34,10 +35,13 @@ TEST_CASE("a mesh is fetched as its box would be, and pictures, reports and expo
   if (no_meshes(cli)) return;
   cli.write("block.obj", kBlock);
   cli.replace("world.yaml", "size_m: [0.07, 0.07, 0.07]", "mesh: {file: block.obj, scale: 0.001}");
-  const auto run = cli.parallax({"run", "scenario.yaml", "--out", "out", "--jobs", "2"});
+  const auto run =
+      cli.parallax({"run", "scenario.yaml", "--out", "out", "--jobs", "2", "--epsilon", "0.2"});
   CAPTURE(run.out);
   CAPTURE(run.err);
-  CHECK(run.code == 0);  // the model is right about this world, whatever the form of the box
+  // The model is right about this world, whatever the form of the box; docs/import.md says how
+  // seldom a mesh slips where a box does not.
+  CHECK(run.code == 0);
   CHECK(run.err.find("W5144") == std::string::npos);
   CHECK(cli.parallax({"replay", "out"}).code == 0);
 

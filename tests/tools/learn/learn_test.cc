@@ -136,11 +136,9 @@ TEST_CASE("random sequences on record are repeated by replay, and are no runs of
 TEST_CASE("the warehouse: the traces of the plan are those of the true model") {
   const CliFixture cli;
   fs::copy(fs::path(PARALLAX_SOURCE_DIR) / "scenarios" / "warehouse", cli.folder() / "store");
-  auto common = cli.read("store/common.yaml");
-  common = common.substr(0, common.find("mapping:"));
-  const auto world = common.find("world:");
-  common.erase(world, common.find("model:", world) - world);
-  cli.write("store/own.yaml", common + "simulator: {model: domain.e}\n");
+  const auto task = cli.read("store/task.yaml");
+  cli.write("store/own.yaml",
+            task.substr(0, task.find("\nmapping:") + 1) + "simulator: {model: domain.e}\n");
   const auto report = json_of(cli, {"learn", "store/own.yaml", "--explore", "40", "--out", "out"});
   CHECK(report.at("clean") == true);
   CHECK(report.at("runs") == report.at("runs_admitted"));
