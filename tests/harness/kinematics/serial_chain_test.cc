@@ -37,7 +37,8 @@ TEST_CASE("the Jacobian is what small differences say, whatever the chain") {
       JointVector before = q, after = q;
       before(i) -= kStep;
       after(i) += kStep;
-      const auto rate = pose_error(chain.tool(before), chain.tool(after)) / (2.0 * kStep);
+      const Eigen::Matrix<double, 6, 1> rate =
+          pose_error(chain.tool(before), chain.tool(after)) / (2.0 * kStep);
       CHECK((rate - J.col(i)).cwiseAbs().maxCoeff() < 1e-6);
     }
   }
