@@ -91,7 +91,7 @@ TEST_CASE(
   Draws draws(14);
   for (int round = 0; round < 200; ++round) {
     const SerialChain chain = drawn_chain(5, draws);
-    const auto tool = chain.tool(drawn_positions(chain, draws)).translation();
+    const Eigen::Vector3d tool = chain.tool(drawn_positions(chain, draws)).translation();
     CHECK((tool - chain.joints()[0].p_RA).norm() <= chain.longest_reach_m() + 1e-12);
   }
   CHECK(six_joint_arm().longest_reach_m() == doctest::Approx(1.0));
