@@ -224,6 +224,8 @@ endfunction()
 # parallax_module(NAME): what is loaded while the program runs has all that it calls, which a linker does not ask
 # by itself. Sanitizers leave their own functions to the program.
 function(parallax_module name)
+  # Nor does it tell where it was built.
+  set_target_properties(${name} PROPERTIES BUILD_RPATH "")
   if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
     target_link_options(${name} PRIVATE -Wl,--no-undefined)
   endif()
