@@ -302,6 +302,11 @@ void attach_contacts(OdeWorld::Engine& engine) {
   dSurfaceParameters& surface = contact.surface;
   surface.mode = dContactApprox1;
   set_stiffness(engine.solver, surface);
+  Hosts& hosts = engine.resting->hosts();
+  hosts.expect_contacts(engine.new_contacts.size());
+  const auto link_of = [](const GeomInfo& info) {
+    return info.link ? std::optional(info.link->index()) : std::nullopt;
+  };
   for (const NewContact& found : engine.new_contacts) {
     surface.mu = found.friction;
     contact.geom.g1 = found.a;
@@ -311,8 +316,10 @@ void attach_contacts(OdeWorld::Engine& engine) {
       contact.geom.pos[i] = found.p_W[i];
       contact.geom.normal[i] = found.normal_W[i];
     }
-    dJointAttach(dJointCreateContact(engine.world, engine.contact_group, &contact),
-                 mover(engine, info_of(found.a)), mover(engine, info_of(found.b)));
+    const GeomInfo &info_a = info_of(found.a), &info_b = info_of(found.b);
+    dxJoint* const joint = dJointCreateContact(engine.world, engine.contact_group, &contact);
+    dJointAttach(joint, mover(engine, info_a), mover(engine, info_b));
+    hosts.listen(joint, link_of(info_a), link_of(info_b));
   }
 }
 

@@ -3,15 +3,22 @@
 #include <ode/ode.h>
 
 #include <algorithm>
+#include <array>
 #include <deque>
+#include <utility>
 
 #include "harness/engine/ode_vector.h"
 
 namespace parallax::harness {
 
-/// Forces of the parts of each joint in the last step, by joint and part.
+/// Forces in the last step: of the parts of each joint, by joint and part, and of contacts.
 struct Hosts::Feedback {
+  struct Contact {
+    std::array<std::optional<std::uint32_t>, 2> links;  // of the robot
+    dJointFeedback forces;
+  };
   std::vector<std::deque<dJointFeedback>> of_parts;
+  std::vector<Contact> of_contacts;  // of this many, reserved: the engine writes into them
 };
 
 Hosts::Hosts(OdeWorld::Engine& engine) : engine_(engine), feedback_(new Feedback) {
@@ -29,6 +36,7 @@ Hosts::Hosts(OdeWorld::Engine& engine) : engine_(engine), feedback_(new Feedback
   if (!engine.solver.resting_joints) return;
   collect_joints();
   sort_joints();
+  find_chains();
   for (std::uint32_t i = 0; i < joints_.size(); ++i) {
     const RobotJoint& joint = joints_[i];
     auto& feedback = feedback_->of_parts.emplace_back(joint.parts.size());
@@ -121,6 +129,16 @@ void Hosts::sort_joints() {
     joints_ = std::move(sorted);
   } else {
     joints_.clear();
+  }
+}
+
+void Hosts::find_chains() {
+  std::vector<bool> at_base(links_.size(), false);  // with no gantry but that of the base between
+  for (RobotJoint& joint : joints_) {
+    const bool hangs_at_base = joint.parent && at_base[*joint.parent];
+    const bool gantry = joint.kind == RobotJoint::Kind::kGantry;
+    at_base[joint.child] = gantry ? !joint.parent : hangs_at_base;
+    joint.in_chain = joint.kind == RobotJoint::Kind::kHinge && hangs_at_base;
   }
 }
 
@@ -250,11 +268,47 @@ Wrench Hosts::inertial_load(const LinkState& link, double timestep_s) const {
   return {force, torque};
 }
 
+void Hosts::expect_contacts(std::size_t count) {
+  feedback_->of_contacts.clear();
+  feedback_->of_contacts.reserve(count);
+}
+
+void Hosts::listen(dxJoint* contact, std::optional<std::uint32_t> one,
+                   std::optional<std::uint32_t> other) {
+  // The engine's first body is the first that there is.
+  const bool moved = one && links_[*one].host != nullptr;
+  const auto [first, second] = moved ? std::pair(one, other) : std::pair(other, one);
+  const auto of_robot = [&](std::optional<std::uint32_t> link) {
+    return link && links_[*link].of_robot && links_[*link].host != nullptr ? link : std::nullopt;
+  };
+  Feedback::Contact& heard = feedback_->of_contacts.emplace_back();
+  heard.links = {of_robot(first), of_robot(second)};
+  dJointSetFeedback(contact, &heard.forces);
+}
+
+/// What contacts push, joints need not.
+void Hosts::subtract_contacts() {
+  for (const Feedback::Contact& contact : feedback_->of_contacts) {
+    const dJointFeedback& forces = contact.forces;
+    const std::array<std::pair<const dReal*, const dReal*>, 2> sides = {
+        std::pair(forces.f1, forces.t1), std::pair(forces.f2, forces.t2)};
+    for (std::size_t side = 0; side < sides.size(); ++side) {
+      if (!contact.links[side]) continue;
+      LinkState& link = links_[*contact.links[side]];
+      const Eigen::Vector3d force = to_vector(sides[side].first);
+      const Eigen::Vector3d at = to_vector(dBodyGetPosition(link.host));
+      link.load.force -= force;
+      link.load.torque -= to_vector(sides[side].second) + at.cross(force);
+    }
+  }
+}
+
 void Hosts::measure_loads(double timestep_s) {
   for (const RobotJoint& joint : joints_) {
     LinkState& child = links_[joint.child];
     child.load = joint.rests ? inertial_load(child, timestep_s) : Wrench{};
   }
+  subtract_contacts();
   for (std::size_t i = joints_.size(); i-- > 0;) {  // children first
     const RobotJoint& joint = joints_[i];
     if (!joint.parent) continue;
@@ -272,6 +326,10 @@ void Hosts::measure_loads(double timestep_s) {
       parent.torque += to_vector(part.t1) + at.cross(force);
     }
   }
+}
+
+double Hosts::motor_torque_nm(std::size_t joint) const {
+  return to_vector(feedback_->of_parts[joint][1].t1).norm();
 }
 
 Wrench Hosts::load(const RobotJoint& joint, const Eigen::Vector3d& about_W) const {

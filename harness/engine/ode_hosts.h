@@ -29,6 +29,9 @@ struct RobotJoint {
   std::vector<dxJoint*> parts;          // of a gantry: linear, angular; else the joint, its motors
   bool may_rest = true;
   bool rests = false;
+  /// A hinge with no gantry between it and the one of the base. It may rest while what it moves
+  /// touches something, as what that pushes is part of its load.
+  bool in_chain = false;
 };
 
 /// Which body of the engine moves a link of the robot: its own, or, when joints at rest make
@@ -66,9 +69,16 @@ class Hosts {
     Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   };
   Motion motion_of_parent(const RobotJoint& joint) const;
+  /// Before a step, once all of its contacts are attached by `listen`: `count` of them will come.
+  void expect_contacts(std::size_t count);
+  /// The forces of a contact of links, or of something else (none), are part of loads.
+  void listen(dxJoint* contact, std::optional<std::uint32_t> one,
+              std::optional<std::uint32_t> other);
   /// After `follow`: what joints at rest had to bear in the step, from the motion of all that they
-  /// carry and the forces of the joints that hang at it and moved.
+  /// carry, the forces of the joints that hang at it and moved, and what contacts push.
   void measure_loads(double timestep_s);
+  /// What the motor of a hinge did in the last step in which it was solved [Nm].
+  double motor_torque_nm(std::size_t joint) const;
   /// The torque is about `about_W`.
   Wrench load(const RobotJoint& joint, const Eigen::Vector3d& about_W) const;
 
@@ -94,6 +104,8 @@ class Hosts {
                  std::vector<dxJoint*> parts);
   void collect_joints();
   void sort_joints();
+  void find_chains();
+  void subtract_contacts();
   void prepare_to_share(LinkState& root);
   Wrench inertial_load(const LinkState& link, double timestep_s) const;
   void merge(std::uint32_t root);

@@ -14,6 +14,13 @@ constexpr double kCalm_s = 0.02;       // before a joint is at rest
 constexpr double kCalmRate = 1e-5;     // of its motion [m/s or rad/s]
 constexpr double kSameCommand = 1e-5;  // what a motor is told changes by no more
 constexpr double kShareOfForce = 0.5;  // that a joint at rest may need
+constexpr double kStruck_m_s = 0.01;   // what comes closer faster may stop at the force's bound
+
+Eigen::Vector3d velocity_at(dxBody* body, const Eigen::Vector3d& p_W) {
+  dVector3 v;
+  dBodyGetPointVel(body, p_W.x(), p_W.y(), p_W.z(), v);
+  return to_vector(v);
+}
 
 bool same(const MotorCommand& a, const MotorCommand& b) {
   return a.max_force == b.max_force && (a.rates - b.rates).cwiseAbs().maxCoeff() <= kSameCommand;
@@ -102,20 +109,50 @@ bool RestingJoints::is_overloaded(const RobotJoint& joint, const Watch& watch) c
   return true;
 }
 
-/// By joint: does it move something that is touched? Of a hand everything up to its gantry.
+void RestingJoints::find_struck() {
+  struck_.assign(engine_.links.size(), false);
+  for (const NewContact& contact : engine_.new_contacts) {
+    Eigen::Vector3d apart = Eigen::Vector3d::Zero();
+    const auto &one = info_of(contact.a).link, &other = info_of(contact.b).link;
+    if (one) apart += velocity_at(engine_.links[one->index()], contact.p_W);
+    if (other) apart -= velocity_at(engine_.links[other->index()], contact.p_W);
+    if (contact.normal_W.dot(apart) > -kStruck_m_s) continue;
+    if (one) struck_[one->index()] = true;
+    if (other) struck_[other->index()] = true;
+  }
+}
+
+/// By joint of a chain: is something struck that it moves, or hangs at?
+std::vector<bool> RestingJoints::struck_joints() const {
+  const std::vector<RobotJoint>& joints = hosts_.joints();
+  std::vector<bool> all(joints.size(), false), below = struck_, above = struck_;
+  for (std::size_t i = joints.size(); i-- > 0;) {  // from the hands up
+    if (joints[i].parent && below[joints[i].child]) below[*joints[i].parent] = true;
+  }
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i].parent && above[*joints[i].parent]) above[joints[i].child] = true;
+    all[i] = joints[i].in_chain && (below[joints[i].child] || above[*joints[i].parent]);
+  }
+  return all;
+}
+
+/// By joint: does it move something that is touched? Of a hand everything up to its gantry. Of a
+/// chain only what is struck counts.
 std::vector<bool> RestingJoints::disturbed(const std::vector<bool>& touched) const {
   const std::vector<RobotJoint>& joints = hosts_.joints();
-  std::vector<bool> all(joints.size(), false);
+  std::vector<bool> all = struck_joints();
   std::vector<bool> links = touched;
   for (std::size_t i = joints.size(); i-- > 0;) {  // from the hands up
-    if (!links[joints[i].child]) continue;
+    if (!links[joints[i].child] || joints[i].in_chain) continue;
     all[i] = true;
     if (joints[i].kind != RobotJoint::Kind::kGantry && joints[i].parent) {
       links[*joints[i].parent] = true;
     }
   }
   for (std::size_t i = 0; i < joints.size(); ++i) {  // and down to what they carry
-    if (joints[i].parent && links[*joints[i].parent]) all[i] = true, links[joints[i].child] = true;
+    if (joints[i].in_chain || !joints[i].parent || !links[*joints[i].parent]) continue;
+    all[i] = true;
+    links[joints[i].child] = true;
   }
   return all;
 }
@@ -123,6 +160,7 @@ std::vector<bool> RestingJoints::disturbed(const std::vector<bool>& touched) con
 void RestingJoints::begin_step(const std::vector<bool>& touched) {
   std::vector<RobotJoint>& joints = hosts_.joints();
   if (joints.empty()) return;
+  find_struck();
   const std::vector<bool> moved = disturbed(touched);
   bool changed = false;
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -133,18 +171,38 @@ void RestingJoints::begin_step(const std::vector<bool>& touched) {
       joints[i].rests = !moved[i] && !watch.overloaded && same(watch.now, watch.before);
       if (!joints[i].rests) watch = Watch{watch.now, watch.now, 0, false};
     } else {
-      watch.calm_steps = !moved[i] && is_calm(joints[i], watch) ? watch.calm_steps + 1 : 0;
+      const bool calm =
+          !moved[i] && is_calm(joints[i], watch) && (!joints[i].in_chain || has_torque_left(i));
+      watch.calm_steps = calm ? watch.calm_steps + 1 : 0;
       watch.before = watch.now;
       joints[i].rests = watch.calm_steps >= calm_steps_needed_;
     }
     changed = changed || joints[i].rests != rested;
   }
   if (changed) hosts_.regroup();
+  bound_motors(moved);
   hosts_.remember_velocities();
+}
+
+bool RestingJoints::has_torque_left(std::size_t joint) const {
+  const Watch& watch = watches_[joint];
+  return watch.solved && watch.now.max_force > 0.0 &&
+         hosts_.motor_torque_nm(joint) <= kShareOfForce * watch.now.max_force;
+}
+
+void RestingJoints::bound_motors(const std::vector<bool>& disturbed) {
+  for (std::size_t i = 0; i < watches_.size(); ++i) {
+    const RobotJoint& joint = hosts_.joints()[i];
+    if (!joint.in_chain) continue;
+    const bool bounded = disturbed[i] || !has_torque_left(i);
+    const double bound = bounded ? watches_[i].now.max_force : dInfinity;
+    dJointSetAMotorParam(engine_.turners[joint.index], dParamFMax, bound);
+  }
 }
 
 void RestingJoints::end_step() {
   const std::vector<RobotJoint>& joints = hosts_.joints();
+  for (std::size_t i = 0; i < joints.size(); ++i) watches_[i].solved = !joints[i].rests;
   const auto rests = [](const RobotJoint& joint) { return joint.rests; };
   if (std::none_of(joints.begin(), joints.end(), rests)) return;
   hosts_.follow();

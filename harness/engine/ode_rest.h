@@ -18,8 +18,10 @@ struct MotorCommand {
 /// Joints of a robot on gantries cost nothing while they are at rest: what they connect moves as
 /// one body, or stands still with the world, until their motors are told something else, something
 /// touches the hand that they move, or they would need half the force that they have. Below that
-/// motors hold a joint as firmly. A hand that touches something is never at rest, nor what it hangs
-/// at up to its gantry: what it holds may slip.
+/// motors hold a joint as firmly. A hand on a gantry that touches something is never at rest, nor a
+/// finger: what it holds may slip. Hinges of an arm that is a chain may rest meanwhile, until
+/// something strikes the arm; and those that move without needing half their torque are solved
+/// without a bound on it, which is less work for the engine and the same motion.
 class RestingJoints {
  public:
   explicit RestingJoints(OdeWorld::Engine& engine);
@@ -31,6 +33,7 @@ class RestingJoints {
   bool tell(GantryId id, const MotorCommand& command);
 
   dxBody* host(std::uint32_t link) const { return hosts_.of(link); }
+  Hosts& hosts() { return hosts_; }
   void reset();
   /// Before a step: `touched` by link, from the contacts of the step.
   void begin_step(const std::vector<bool>& touched);
@@ -43,13 +46,19 @@ class RestingJoints {
     MotorCommand now, before;
     std::int64_t calm_steps = 0;
     bool overloaded = false;
+    bool solved = false;  // in the last step
   };
+  void find_struck();
+  void bound_motors(const std::vector<bool>& disturbed);
   bool is_calm(const RobotJoint& joint, const Watch& watch) const;
+  bool has_torque_left(std::size_t joint) const;
   bool is_overloaded(const RobotJoint& joint, const Watch& watch) const;
+  std::vector<bool> struck_joints() const;
   std::vector<bool> disturbed(const std::vector<bool>& touched) const;
 
   OdeWorld::Engine& engine_;
   Hosts hosts_;
+  std::vector<bool> struck_;                           // by link, in this step
   std::vector<Watch> watches_;                         // by joint of the hosts
   std::vector<int> by_slider_, by_hinge_, by_gantry_;  // index of a joint; -1: not of the robot
   std::int64_t calm_steps_needed_ = 1;

@@ -1,13 +1,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <functional>
-#include <memory>
 
-#include "harness/engine/physics_world.h"
-#include "harness/robot/mobile_robot.h"
 #include "harness/world/angles.h"
 #include "tests/harness/kitchen/kitchen_world.h"
+#include "tests/harness/robot/servo_robot.h"
 #include "tests/harness/world/hand_made.h"
 
 // Joints that are at rest are not solved. What that must not change is told by a world of which all
@@ -16,80 +13,9 @@
 namespace parallax::harness {
 namespace {
 
-WorldSpec solved(WorldSpec spec) {
-  spec.solver.resting_joints = false;
-  return spec;
-}
-
-/// The robot of the kitchen with its servos, but without the actions that lead them.
-class Robot {
- public:
-  explicit Robot(const WorldSpec& spec) : world_(make_world(spec)), robot_(spec, *world_) {
-    start();
-  }
-
-  void start() {
-    REQUIRE_FALSE(world_->reset(default_placements(world_->layout()), 1).has_value());
-    robot_.reset();
-  }
-  void run(double time_s) {
-    for (int i = 0; i < std::lround(time_s / world_->timestep_s()); ++i) step();
-  }
-  void step() {
-    const std::int64_t before = world_->statistics().joints_at_rest;
-    robot_.drive_motors();
-    REQUIRE(world_->step());
-    at_rest_ = world_->statistics().joints_at_rest - before;
-  }
-  /// How many joints rested in the last step.
-  std::int64_t at_rest() const { return at_rest_; }
-  MobileRobot& robot() { return robot_; }
-  Arm& left() { return *robot_.find_arm("left"); }
-  Arm& right() { return *robot_.find_arm("right"); }
-  PhysicsWorld& world() { return *world_; }
-  Eigen::Vector3d at(std::string_view body) const {
-    return world_->position(*world_->layout().find_body(body));
-  }
-  double yaw_rad(std::string_view body) const {
-    return heading_rad(world_->rotation(*world_->layout().find_body(body)));
-  }
-
- private:
-  std::unique_ptr<PhysicsWorld> world_;
-  MobileRobot robot_;
-  std::int64_t at_rest_ = 0;
-};
-
 constexpr Motion kMotion{0.2, 0.5, 0.001, 10.0};
 
 constexpr std::int64_t kAll = 6;  // wheels, lift, two arms, two fingers
-
-double distance_m(const Robot& a, const Robot& b, std::string_view body) {
-  return (a.at(body) - b.at(body)).norm();
-}
-
-/// The same orders to a robot whose joints rest and to one whose joints are all solved.
-struct Both {
-  Robot resting, all_solved;
-  explicit Both(const WorldSpec& spec) : resting(spec), all_solved(solved(spec)) {}
-  void tell(const std::function<void(Robot&)>& order) {
-    order(resting);
-    order(all_solved);
-  }
-  void run(double time_s) {
-    resting.run(time_s);
-    all_solved.run(time_s);
-    CHECK(all_solved.at_rest() == 0);
-  }
-  void check_same(double tolerance_m) const {
-    for (const char* body : {"base", "torso", "left_palm", "left_near", "left_far", "right_palm",
-                             "right_near", "right_far"}) {
-      CAPTURE(body);
-      CHECK(distance_m(resting, all_solved, body) < tolerance_m);
-      CHECK(std::abs(wrapped(resting.yaw_rad(body) - all_solved.yaw_rad(body))) < tolerance_m);
-    }
-  }
-};
 
 TEST_CASE("a robot that is told nothing rests with all its joints, and stays where it is") {
   Both both(kitchen_world());
@@ -105,25 +31,25 @@ TEST_CASE("a robot of which one joint moves takes along what rests on it") {
   both.run(0.5);
   std::int64_t at_rest = 0;
   SUBCASE("the torso") {
-    both.tell([](Robot& robot) { robot.robot().lift_to(0.2, kMotion); });
+    both.tell([](ServoRobot& robot) { robot.robot().lift_to(0.2, kMotion); });
     both.run(0.5);
     at_rest = kAll - 1;
     CHECK(both.resting.at("right_far").z() > 1.15);
   }
   SUBCASE("the wheels") {
-    both.tell([](Robot& robot) { robot.robot().base().drive_to({0.3, 0.3}, kMotion); });
+    both.tell([](ServoRobot& robot) { robot.robot().base().drive_to({0.3, 0.3}, kMotion); });
     both.run(1.0);
     at_rest = kAll - 1;
     CHECK(both.resting.at("left_palm").x() < 1.05);
   }
   SUBCASE("the wheels, on the spot") {
-    both.tell([](Robot& robot) { robot.robot().base().turn_to(1.0, kMotion); });
+    both.tell([](ServoRobot& robot) { robot.robot().base().turn_to(1.0, kMotion); });
     both.run(1.0);
     at_rest = kAll - 1;
     CHECK(both.resting.yaw_rad("left_palm") > 0.1);
   }
   SUBCASE("an arm, while the other one rests") {
-    both.tell([](Robot& robot) {
+    both.tell([](ServoRobot& robot) {
       robot.left().move_tool_to(robot.left().tool() + Eigen::Vector3d(-0.1, 0.1, 0.1), kMotion);
       robot.left().turn_wrist_to(0.5, kMotion);
     });
@@ -132,7 +58,7 @@ TEST_CASE("a robot of which one joint moves takes along what rests on it") {
     CHECK(std::abs(both.resting.left().wrist_rad()) > 0.05);
   }
   SUBCASE("a finger, on wheels that turn") {
-    both.tell([](Robot& robot) {
+    both.tell([](ServoRobot& robot) {
       robot.robot().base().turn_to(1.0, kMotion);
       robot.right().open_to(0.02, kMotion);
     });
@@ -144,7 +70,7 @@ TEST_CASE("a robot of which one joint moves takes along what rests on it") {
   CHECK(both.resting.at_rest() == at_rest);
   both.check_same(1e-5);
   // And comes to rest again.
-  both.tell([](Robot& robot) {
+  both.tell([](ServoRobot& robot) {
     robot.robot().brake_all();
     robot.right().open_to(robot.right().opening_m(), kMotion);
   });
@@ -172,16 +98,16 @@ TEST_CASE("a flap that is hinged at the torso rests and moves like the rest") {
   Both both(spec);
   both.run(0.5);
   CHECK(both.resting.at_rest() == kAll + 1);
-  both.tell([](Robot& robot) { robot.robot().base().turn_to(0.5, kMotion); });
+  both.tell([](ServoRobot& robot) { robot.robot().base().turn_to(0.5, kMotion); });
   both.run(0.5);
   CHECK(both.resting.at_rest() == kAll);
-  both.tell([](Robot& robot) {
+  both.tell([](ServoRobot& robot) {
     PhysicsWorld& world = robot.world();
     world.set_hinge_motor(*world.layout().find_hinge("flap_hinge"), 0.5, 5.0);
   });
   both.run(0.5);
   CHECK(both.resting.at_rest() == kAll - 1);
-  const auto angle = [](Robot& robot) {
+  const auto angle = [](ServoRobot& robot) {
     return robot.world().hinge_angle_rad(*robot.world().layout().find_hinge("flap_hinge"));
   };
   CHECK(angle(both.resting) == doctest::Approx(0.25).epsilon(0.01));
@@ -207,7 +133,7 @@ TEST_CASE("wheels push the mass of all that rests on them, and turn its moment o
   const Motion too_fast{5.0, 1e4, 0.001, 10.0};
   SUBCASE("the mass") {
     const double start_m = both.resting.at("base").x();
-    both.tell([&](Robot& robot) {
+    both.tell([&](ServoRobot& robot) {
       robot.robot().base().drive_to(robot.robot().base().pose().p - Eigen::Vector2d(9.0, 0.0),
                                     too_fast);
     });
@@ -218,7 +144,7 @@ TEST_CASE("wheels push the mass of all that rests on them, and turn its moment o
     CHECK(start_m - both.resting.at("base").x() == doctest::Approx(way_m).epsilon(0.002));
   }
   SUBCASE("the moment of inertia") {
-    both.tell([&](Robot& robot) { robot.robot().base().turn_to(3.0, too_fast); });
+    both.tell([&](ServoRobot& robot) { robot.robot().base().turn_to(3.0, too_fast); });
     both.run(kTime_s);
     CHECK(both.resting.yaw_rad("base") > 0.05);
   }
@@ -250,7 +176,7 @@ TEST_CASE("an arm that something lies on does not rest, the rest of the robot do
   BodySpec thing = box_body("thing", {0.04, 0.04, 0.02}, {1.12, -0.09, 1.246}, 0.1);
   thing.material = "wood";
   spec.bodies.push_back(thing);
-  Robot robot(spec);
+  ServoRobot robot(spec);
   robot.run(1.0);
   CHECK(robot.at_rest() == kAll - 2);  // not the palm, not its finger
 }
@@ -261,7 +187,8 @@ TEST_CASE("a base at rest slides when an arm pushes harder than its wheels hold"
   Both both(spec);
   both.run(0.5);
   const auto reach = [](const Eigen::Vector3d& by) {
-    return [by](Robot& robot) { robot.left().move_tool_to(robot.left().tool() + by, kMotion); };
+    return
+        [by](ServoRobot& robot) { robot.left().move_tool_to(robot.left().tool() + by, kMotion); };
   };
   both.tell(reach({0.0, 0.0, -0.5}));
   both.run(4.0);
@@ -274,7 +201,7 @@ TEST_CASE("a base at rest slides when an arm pushes harder than its wheels hold"
   CHECK((both.resting.at("base") - both.all_solved.at("base")).norm() < 0.02 * slid_m);
 }
 
-std::uint64_t digest_of_a_run(Robot& robot) {
+std::uint64_t digest_of_a_run(ServoRobot& robot) {
   robot.start();
   robot.run(0.1);
   robot.robot().lift_to(0.2, kMotion);
@@ -287,9 +214,9 @@ std::uint64_t digest_of_a_run(Robot& robot) {
 }
 
 TEST_CASE("a reset while joints rest leaves no trace") {
-  Robot fresh(kitchen_world());
+  ServoRobot fresh(kitchen_world());
   const std::uint64_t expected = digest_of_a_run(fresh);
-  Robot used(kitchen_world());
+  ServoRobot used(kitchen_world());
   CHECK(digest_of_a_run(used) == expected);
   CHECK(digest_of_a_run(used) == expected);
   // Left with everything at rest, with the torso on its way, with a finger on wheels that turn.
