@@ -12,6 +12,7 @@
 #include "compiler/base/hash.h"
 #include "harness/campaign/trial.h"
 #include "harness/engine/mujoco_module.h"
+#include "harness/engine/world_check.h"
 #include "harness/robot/ode_simulator.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_feed.h"
@@ -76,6 +77,7 @@ Speed simulate(const char* file, EngineKind engine) {
   auto loaded = load_scenario_model(file, context);
   if (!loaded) return {};
   loaded->scenario.world.engine = engine;
+  if (!harness::check_world(loaded->scenario.world).empty()) return {};
   EnumeratedTraces traces(loaded->compilation.model, context);
   auto trace = traces.next();
   if (!trace || !*trace) return {};
@@ -114,14 +116,16 @@ void print_speed(const char* file, EngineKind engine) {
     const bool told = ::write(ends[1], &speed, sizeof speed) == sizeof speed;
     ::_exit(told ? 0 : 1);
   }
+  ::close(ends[1]);  // else a child that dies leaves the read waiting
   Speed speed;
   const bool read = ::read(ends[0], &speed, sizeof speed) == sizeof speed;
   int status = 0;
   rusage usage{};
   ::wait4(child, &status, 0, &usage);
   ::close(ends[0]);
-  ::close(ends[1]);
-  if (!read || speed.processor_s == 0.0) return fmt::print("| {} | failed |\n", file);
+  if (!read || speed.processor_s == 0.0) {
+    return fmt::print("| {} | {} | not for this engine | | | |\n", file, to_string(engine));
+  }
   fmt::print("| {} | {} | {:.1f} | {} of {} | {:.0f} ms | {:.0f} MB |\n", file, to_string(engine),
              speed.simulated_s / speed.processor_s, speed.clean, kSimulations, 1e3 * speed.built_s,
              static_cast<double>(usage.ru_maxrss) / 1024.0);
