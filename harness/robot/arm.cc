@@ -95,6 +95,15 @@ double Arm::wrist_rad() const {
   return std::visit([](const auto& carrier) { return carrier.wrist_rad(); }, carrier_);
 }
 
+double Arm::wrist_goal_rad() const {
+  const auto* chain = std::get_if<PalmChain>(&carrier_);
+  return chain != nullptr ? chain->wrist_goal_rad() : wrist_rad();
+}
+
+void Arm::aim_wrist(double yaw_rad) {
+  if (auto* chain = std::get_if<PalmChain>(&carrier_)) chain->aim_wrist(yaw_rad);
+}
+
 Eigen::Vector3d Arm::pad_line(double wrist_rad) const {
   const Eigen::Vector3d now = world_.rotation(palm_) * jaws_.pad_line_P();
   return Eigen::AngleAxisd(wrist_rad - this->wrist_rad(), Eigen::Vector3d::UnitZ()) * now;

@@ -24,6 +24,8 @@ class Arm {
   void move_tool_to(const Eigen::Vector3d& target_W, const Motion& motion);
   /// Line of the pads against what the arm hangs on, the shorter way; 0: as it is by default.
   void turn_wrist_to(double yaw_rad, const Motion& motion);
+  /// Of a chain: the next straight motion turns the wrist so on its way.
+  void aim_wrist(double yaw_rad);
   /// Of a chain: through positions of its joints.
   void swing_along(ChainWay way, const Motion& motion);
   void open_to(double opening_m, const Motion& motion);
@@ -36,6 +38,8 @@ class Arm {
   Eigen::Vector3d tool() const;  // in the world [m]
   double opening_m() const;
   double wrist_rad() const;
+  /// How the next straight motion of the tool leaves it.
+  double wrist_goal_rad() const;
   /// From the far pad to the near one once the wrist is at `wrist_rad`; world, unit.
   Eigen::Vector3d pad_line(double wrist_rad) const;
   /// The middle of the palm, seen from the tool [m]; the same whatever way the wrist is turned.

@@ -40,13 +40,25 @@ Eigen::Vector3d MobileController::target_point() const {
   return {std::isnan(x) ? p.x() : x, std::isnan(y) ? p.y() : y, std::isnan(z) ? p.z() : z};
 }
 
+/// Of a gantry.
+double MobileController::reach_margin_m(const Eigen::Vector3d& tool_W) const {
+  const double distance_m = (tool_W - robot().shoulder(arm())).norm();
+  const ArmSpec& spec = arm().spec();
+  return std::min(spec.max_reach_m - distance_m, distance_m - spec.min_reach_m);
+}
+
+bool MobileController::reaches(const Eigen::Vector3d& tool_W, double wrist_rad) const {
+  if (arm().chain() != nullptr) return arm().chain()->reach(tool_W, wrist_rad).reached;
+  return reach_margin_m(tool_W) >= 0.0;
+}
+
 bool MobileController::require_reach(const Eigen::Vector3d& tool_W, double wrist_rad,
                                      const std::string& what) {
   if (arm().chain() != nullptr) return require_chain_reach(tool_W, wrist_rad, what);
+  const double margin_m = reach_margin_m(tool_W);
+  if (margin_m >= 0.0) return true;
   const double distance_m = (tool_W - robot().shoulder(arm())).norm();
   const ArmSpec& spec = arm().spec();
-  const double margin_m = std::min(spec.max_reach_m - distance_m, distance_m - spec.min_reach_m);
-  if (margin_m >= 0.0) return true;
   refuse_with(kManipulationUnreachable,
               fmt::format("{} is {} from the shoulder, the reach is {} to {}", what,
                           metres(distance_m), metres(spec.min_reach_m), metres(spec.max_reach_m)),
@@ -164,6 +176,11 @@ void MobileController::add_wrist(double yaw_rad) {
   add(
       "turning",
       [this, yaw_rad] {
+        // What cannot turn here turns on its way to where it works.
+        if (!arm_ways(std::nullopt, 0.0).turns_on_the_spot(yaw_rad)) {
+          arm().aim_wrist(yaw_rad);
+          return 0.0;
+        }
         const double way = std::abs(wrapped(yaw_rad - arm().wrist_rad()));
         arm().turn_wrist_to(yaw_rad, kWrist);
         return patience_s(way, kWrist);

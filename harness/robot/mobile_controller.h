@@ -40,6 +40,7 @@ class MobileController : public PhasedController {
   /// Refuses unless the tool can be at `tool_W` with the wrist turned to `wrist_rad`; true if it
   /// can: within the reach of a gantry, or by some positions of the joints of a chain.
   bool require_reach(const Eigen::Vector3d& tool_W, double wrist_rad, const std::string& what);
+  bool reaches(const Eigen::Vector3d& tool_W, double wrist_rad) const;
   /// Of the arm and what it holds, against all but the robot and `touched`: what the arm is for.
   ArmWays arm_ways(std::optional<BodyId> touched, double tolerance_m) const;
   void add_tool_move(std::string_view name, std::function<Eigen::Vector3d()> target, Motion motion);
@@ -60,6 +61,7 @@ class MobileController : public PhasedController {
  private:
   bool require_chain_reach(const Eigen::Vector3d& tool_W, double wrist_rad,
                            const std::string& what);
+  double reach_margin_m(const Eigen::Vector3d& tool_W) const;
   bool add_swings(const Eigen::Vector3d& goal);
   ToolPath find_path(const Eigen::Vector3d& goal, double ceiling_m) const;
 

@@ -35,19 +35,28 @@ class PickUp final : public MobileController {
     const double frame_rad =
         grasp_.follows_body ? perception().belief(object_).yaw_rad : heading_rad;
     const Eigen::AngleAxisd turn(frame_rad, Eigen::Vector3d::UnitZ());
-    // The near pad passes at the clearance; the far one closes up to it.
-    const double clearance_m = clearance();
     const double wrist_W = frame_rad + grasp_.wrist_rad;
     // Pads squeeze along y of the palm: a turn by half a circle is the same grasp with the pads
     // exchanged; the smaller turn of the wrist is taken.
     double wrist = wrapped(wrist_W - heading_rad);
     if (wrist > 0.5 * M_PI) wrist -= M_PI;
     if (wrist <= -0.5 * M_PI) wrist += M_PI;
+    const Eigen::Vector3d grasp_W = *perception().believed(object_) + turn * grasp_.p_BG;
+    // What joints do not reach one way round they may reach the other.
+    const double other = wrist > 0.0 ? wrist - M_PI : wrist + M_PI;
+    if (!reaches(target_for(grasp_W, wrist), wrist) && reaches(target_for(grasp_W, other), other)) {
+      wrist = other;
+    }
     to_near_ = arm().pad_line(wrist);
-    target_ = *perception().believed(object_) + turn * grasp_.p_BG -
-              to_near_ * (0.5 * arm().spec().opening_m - 0.5 * grasp_.width_m - clearance_m);
+    target_ = target_for(grasp_W, wrist);
     if (!require_reach(target_, wrist, fmt::format("`{}`", name_of(object_)))) return;
     add_phases(wrist, target_ - number("standoff_m") * way_in());
+  }
+
+  /// Of the tool: the near pad passes at the clearance; the far one closes up to it.
+  Eigen::Vector3d target_for(const Eigen::Vector3d& grasp_W, double wrist) const {
+    return grasp_W - arm().pad_line(wrist) *
+                         (0.5 * arm().spec().opening_m - 0.5 * grasp_.width_m - clearance());
   }
 
   /// Of each pad before it closes; no more than the gripper opens.

@@ -11,8 +11,16 @@ namespace parallax::harness {
 namespace {
 
 constexpr double kFollowRate_hz = 20.0;  // of the correction towards the way, joint by joint
-constexpr double kMostFollow = 0.2;      // of the same [rad/s or m/s]
+constexpr double kMostFollow = 1.0;      // of the same [rad/s or m/s]
+constexpr double kMostRate = 2.0;        // of a joint on the way [rad/s or m/s]
+constexpr double kOnWay = 0.02;          // a joint is so far from the way [rad or m]: from here on
+constexpr double kOffWay = 0.1;          // the arm slows down; here it waits for the correction
 constexpr double kNoWay = 1e-9;          // [m or rad]
+
+/// The same direction, no part larger than `most`.
+JointVector bounded(const JointVector& rates, double most) {
+  return rates * (most / std::max(most, rates.cwiseAbs().maxCoeff()));
+}
 
 }  // namespace
 
@@ -107,6 +115,8 @@ void PalmChain::turn_to(double yaw_rad, const Motion& motion) {
   start(follow_way(arm_.chain, positions(), goal, {}, nullptr), goal, motion);
 }
 
+void PalmChain::aim_wrist(double yaw_rad) { wrist_goal_rad_ = wrapped(yaw_rad); }
+
 void PalmChain::brake() {
   if (!along_.at_rest() && mode_ == Mode::kTurn) wrist_goal_rad_ = wrist_rad();
   along_.brake();
@@ -123,14 +133,22 @@ double PalmChain::way_done() const {
   return ahead_.dot(mode_ == Mode::kTurn ? error.tail<3>() : error.head<3>());
 }
 
+/// Of the joints, on a way of which a share passes per second. Where a little of the way turns a
+/// joint far, or the arm is not where the way has it, it goes slower.
+JointVector PalmChain::led_rates(double share, double share_per_s, double off) const {
+  return bounded(way_.slope(share) * share_per_s, kMostRate) *
+         std::clamp((kOffWay - off) / (kOffWay - kOnWay), 0.0, 1.0);
+}
+
 void PalmChain::drive_motors() {
   const JointVector q = positions();
   const double done = way_done();
   const double speed = along_.next_velocity(done, 0.0, world_.timestep_s());
   const double share = length_ > kNoWay ? done / length_ : 0.0;
-  JointVector rates = kFollowRate_hz * (way_.at(share) - q);
-  for (double& rate : rates) rate = std::clamp(rate, -kMostFollow, kMostFollow);
-  if (length_ > kNoWay) rates += way_.slope(share) * (speed / length_);
+  const JointVector off = way_.at(share) - q;
+  // All joints by the same factor: the way back to the way is straight.
+  JointVector rates = bounded(kFollowRate_hz * off, kMostFollow);
+  if (length_ > kNoWay) rates += led_rates(share, speed / length_, off.cwiseAbs().maxCoeff());
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const double rate = rates(static_cast<Eigen::Index>(i));
     if (const auto* hinge = std::get_if<HingeId>(&joints_[i])) {

@@ -28,9 +28,13 @@ class PalmChain {
   void swing_along(ChainWay way, const Motion& motion);
   /// The shorter way, against the chain's root.
   void turn_to(double yaw_rad, const Motion& motion);
+  /// The next line turns the wrist so, on its way.
+  void aim_wrist(double yaw_rad);
   void brake();
   bool at_rest() const { return along_.at_rest(); }
   double wrist_rad() const;
+  /// How lines leave it.
+  double wrist_goal_rad() const { return wrist_goal_rad_; }
   void drive_motors();
 
   const ChainArm& arm() const { return arm_; }
@@ -47,6 +51,7 @@ class PalmChain {
   /// In metres of the tool's line or in radians of its turn.
   void start(ChainWay way, const Eigen::Isometry3d& goal, const Motion& motion);
   double way_done() const;
+  JointVector led_rates(double share, double share_per_s, double off) const;
 
   PhysicsWorld& world_;
   ChainArm arm_;

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "harness/kinematics/chain_search.h"
+#include "harness/world/angles.h"
 
 namespace parallax::harness {
 namespace {
@@ -16,6 +18,8 @@ constexpr double kHeight_m = 0.10;   // between the heights
 constexpr double kSame_m = 1e-6;
 constexpr int kPostures = 12;  // of a goal that are looked for
 constexpr int kSearchRounds = 400;
+constexpr double kTurned_rad = 0.02;  // of a wrist, where it is to be
+constexpr double kShareOfJump = 0.8;  // that is planned with: the motion begins a little elsewhere
 constexpr double kLeastUpright = 0.95;  // cosine of how far a hand that holds something may lean
 
 class Ways {
@@ -109,7 +113,7 @@ ArmWays::ArmWays(const PhysicsWorld& world, const Arm& arm, std::optional<BodyId
                  BodyMask ignored, const BodyMask& robot, double tolerance_m)
     : arm_(arm),
       chain_(arm.chain()),
-      wrist_rad_(arm.wrist_rad()),
+      wrist_rad_(arm.wrist_goal_rad()),
       holds_(load.has_value()),
       tool_W_(arm.tool()),
       palm_(world, moving_with(world, arm, load), joined(ignored, robot), tolerance_m) {
@@ -131,14 +135,15 @@ std::optional<JointVector> ArmWays::posture(const Eigen::Vector3d& tool_W) {
   return found.q;
 }
 
-std::optional<WayFault> ArmWays::lead(JointVector& q, const Eigen::Vector3d& to) const {
+std::optional<WayFault> ArmWays::lead(JointVector& q, const Eigen::Isometry3d& goal) const {
   std::optional<Obstacle> hit;
   const auto check = [&](const JointVector& at) -> std::optional<std::string> {
     hit = links_->at(at);
     return hit ? std::optional<std::string>("in the way") : std::nullopt;
   };
-  const ChainWay way =
-      follow_way(chain_->arm().chain, q, chain_->upright(to, wrist_rad_), {}, check);
+  WayOptions options;
+  options.jump *= kShareOfJump;
+  const ChainWay way = follow_way(chain_->arm().chain, q, goal, options, check);
   if (way.whole()) {
     q = way.last();
     return std::nullopt;
@@ -148,13 +153,15 @@ std::optional<WayFault> ArmWays::lead(JointVector& q, const Eigen::Vector3d& to)
 }
 
 std::optional<WayFault> ArmWays::along(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  if (auto hit = palm_.along(from - tool_W_, to - from, kStep_m)) {
-    return WayFault{std::move(hit), {}};
+  if (is_turned()) {  // else its links alone tell what the palm meets
+    if (auto hit = palm_.along(from - tool_W_, to - from, kStep_m)) {
+      return WayFault{std::move(hit), {}};
+    }
   }
   if (chain_ == nullptr) return std::nullopt;
   auto q = posture(from);
   if (!q) return WayFault{{}, "the joints cannot bring the tool there"};
-  if (auto fault = lead(*q, to)) return fault;
+  if (auto fault = lead(*q, chain_->upright(to, wrist_rad_))) return fault;
   known_.emplace_back(to, *q);
   return std::nullopt;
 }
@@ -163,9 +170,19 @@ std::optional<WayFault> ArmWays::follow(const std::vector<Eigen::Vector3d>& corn
   if (chain_ == nullptr) return std::nullopt;
   JointVector q = chain_->positions();
   for (const Eigen::Vector3d& corner : corners) {
-    if (auto fault = lead(q, corner)) return fault;
+    if (auto fault = lead(q, chain_->upright(corner, wrist_rad_))) return fault;
   }
   return std::nullopt;
+}
+
+bool ArmWays::is_turned() const {
+  return std::abs(wrapped(wrist_rad_ - arm_.wrist_rad())) < kTurned_rad;
+}
+
+bool ArmWays::turns_on_the_spot(double wrist_rad) const {
+  if (chain_ == nullptr) return true;
+  JointVector q = chain_->positions();
+  return !lead(q, chain_->upright(tool_W_, wrist_rad));
 }
 
 bool ArmWays::may_be(const JointVector& q) const {

@@ -42,7 +42,8 @@ ToolPath find_tool_path(const StretchTest& test, const Eigen::Vector3d& from,
 /// The test of one set of shapes, which stand at `from`.
 StretchTest swept(const Sweep& sweep, const Eigen::Vector3d& from);
 
-/// Straight ways of the tool of an arm as it hangs at construction, its wrist as it is turned then.
+/// Straight ways of the tool of an arm as it hangs at construction, which leave its wrist as it is
+/// to be turned then; the first of them turns it, if it is not.
 /// On them the palm and what it holds meet nothing, and, of a chain, no link does; and the joints
 /// can follow. Postures at points that no way led to yet are looked for from those nearby.
 class ArmWays {
@@ -58,11 +59,15 @@ class ArmWays {
   /// other, on which no link meets anything and a hand that holds something leans little. Empty:
   /// none was found.
   std::vector<ChainWay> swings(const Eigen::Vector3d& to) const;
+  /// Of a chain: can the wrist be turned so where the tool is, with nothing in the way? Others turn
+  /// about the axis of the palm.
+  bool turns_on_the_spot(double wrist_rad) const;
 
  private:
   bool may_be(const JointVector& q) const;
   std::optional<JointVector> posture(const Eigen::Vector3d& tool_W);
-  std::optional<WayFault> lead(JointVector& q, const Eigen::Vector3d& to) const;
+  std::optional<WayFault> lead(JointVector& q, const Eigen::Isometry3d& goal) const;
+  bool is_turned() const;
 
   const Arm& arm_;
   const PalmChain* chain_;
