@@ -72,6 +72,7 @@ struct Key {
   static constexpr std::string_view kLostTraces = "lost_traces";
   static constexpr std::string_view kMargin = "margin";
   static constexpr std::string_view kMesh = "mesh";
+  static constexpr std::string_view kMjcf = "mjcf";
   static constexpr std::string_view kModels = "models";
   static constexpr std::string_view kMomentsKgM2 = "moments_kg_m2";
   static constexpr std::string_view kOrder = "order";

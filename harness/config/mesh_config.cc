@@ -17,8 +17,6 @@ namespace {
 
 constexpr NumberBounds kScaling{0.0, 1e6, true, false};
 constexpr std::size_t kMaxMeshes = 500;  // different ones, of one world
-// What a hull adds to its mesh, or what it loses, that is worth a word.
-constexpr double kFuller = 1.05, kOff_m = 0.001;
 
 struct WantedMesh {
   base::SourceRange range;
@@ -153,18 +151,8 @@ class MeshAdder {
 
   void note_loss(const WantedMesh& wanted, const std::string& name, const MeshCorners& made) {
     if (made.fault) return;
-    const auto add = [&](const std::string& what, const std::string& first) {
-      Lost& lost = lost_.emplace(what, Lost{wanted.range, 0, first}).first->second;
-      ++lost.count;
-    };
-    if (made.volume > 0.0 && made.hull_volume > kFuller * made.volume) {
-      add("hollows of meshes, which become their convex hull",
-          fmt::format("{}: {:.2f} times its volume", name, made.hull_volume / made.volume));
-    }
-    if (made.off > kOff_m) {
-      add(fmt::format("corners of hulls that have more than {}", kMaxMeshCorners),
-          fmt::format("{}: up to {:.1f} mm of {} corners", name, 1000.0 * made.off,
-                      made.hull_corners));
+    for (const MeshLoss& loss : losses_of(made, name)) {
+      ++lost_.emplace(loss.what, Lost{wanted.range, 0, loss.of}).first->second.count;
     }
   }
 

@@ -30,8 +30,8 @@ std::vector<LocatedText> located_texts(const YamlNode& node, std::string_view ke
 /// `world`: solver, friction, floor, bodies, joints, robot (docs/scenario_format.md).
 WorldSpec read_world(const YamlNode& node, EngineKind engine, base::DiagnosticSink& sink);
 
-/// Puts what the `sdf` or `urdf` of `world` says under the other keys of `world`, each value with
-/// its place in that file. False after an error was reported.
+/// Puts what the `sdf`, `urdf` or `mjcf` of `world` says under the other keys of `world`, each
+/// value with its place in that file. False after an error was reported.
 bool add_imported(YamlNode& root, const base::PathGate& gate, base::SourceFiles& files,
                   base::DiagnosticSink& sink);
 

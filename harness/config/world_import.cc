@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <system_error>
 
@@ -64,7 +65,22 @@ class MapNode {
   YamlNode node_;
 };
 
-YamlNode shape_node(const BodyShape& shape, const MeshUse* mesh, const base::SourceRange& range) {
+using Corners = std::vector<Eigen::Vector3d>;
+
+YamlNode corners_node(const Corners& corners, const base::SourceRange& range) {
+  auto list = node_at(YamlNode::Kind::kList, range);
+  for (const Eigen::Vector3d& corner : corners) {
+    auto& item = list.items.emplace_back(node_at(YamlNode::Kind::kList, range));
+    for (const double x : {corner.x(), corner.y(), corner.z()}) {
+      item.items.push_back(node_at(YamlNode::Kind::kScalar, range, fmt::format("{}", x)));
+    }
+  }
+  return list;
+}
+
+/// A hull is given by a mesh or by its corners.
+YamlNode shape_node(const BodyShape& shape, const MeshUse* mesh, const Corners* corners,
+                    const base::SourceRange& range) {
   MapNode out(range);
   MapNode file(range);
   if (mesh != nullptr) {
@@ -90,7 +106,11 @@ YamlNode shape_node(const BodyShape& shape, const MeshUse* mesh, const base::Sou
       out.put(Key::kCapsule, round.take());
       break;
     case ShapeForm::kHull:
-      out.put(Key::kMesh, file.take());
+      if (corners != nullptr) {
+        out.put(Key::kHull, corners_node(*corners, range));
+      } else {
+        out.put(Key::kMesh, file.take());
+      }
       break;
   }
   out.vector(Key::kAtM, shape.p_BS);
@@ -106,8 +126,10 @@ YamlNode body_node(const ImportedBody& made, const base::SourceRange& range) {
   auto shapes = node_at(YamlNode::Kind::kList, range);
   for (std::size_t i = 0; i < body.shapes.size(); ++i) {
     const auto mesh = made.meshes.find(i);
-    shapes.items.push_back(
-        shape_node(body.shapes[i], mesh == made.meshes.end() ? nullptr : &mesh->second, range));
+    const auto hull = made.hulls.find(i);
+    shapes.items.push_back(shape_node(body.shapes[i],
+                                      mesh == made.meshes.end() ? nullptr : &mesh->second,
+                                      hull == made.hulls.end() ? nullptr : &hull->second, range));
   }
   out.put(Key::kShapes, std::move(shapes));
   out.number_unless_zero(Key::kMassKg, body.mass_kg);
@@ -162,6 +184,16 @@ std::set<std::string> materials_in(const YamlNode& world) {
   return out;
 }
 
+struct ImportFormat {
+  std::string_view key, package;
+  bool (*is_there)();
+  ImportedWorld (*read)(const ImportInput& input);
+};
+constexpr std::array<ImportFormat, 3> kFormats = {
+    {{Key::kSdf, "libsdformat-dev", &reads_sdf, &import_sdf},
+     {Key::kUrdf, "liburdfdom-dev", &reads_urdf, &import_urdf},
+     {Key::kMjcf, "libmujoco-dev", &reads_mjcf, &import_mjcf}}};
+
 class WorldImporter {
  public:
   WorldImporter(YamlNode& world, const base::PathGate& gate, base::SourceFiles& files,
@@ -170,16 +202,20 @@ class WorldImporter {
 
   bool run() {
     const auto errors_before = sink_.error_count();
-    const auto* sdf = world_.find(Key::kSdf);
-    const auto* urdf = world_.find(Key::kUrdf);
-    if (sdf != nullptr && urdf != nullptr) {
-      sink_.error(codes::kUnknownKey, urdf->key_range, Key::kUrdf,
-                  fmt::format("`{}`, which has `{}`", Key::kWorld, Key::kSdf));
-      return false;
+    const YamlEntry* found = nullptr;
+    for (const ImportFormat& format : kFormats) {
+      const auto* other = world_.find(format.key);
+      if (other == nullptr) continue;
+      if (found != nullptr) {
+        sink_.error(codes::kUnknownKey, other->key_range, format.key,
+                    fmt::format("`{}`, which has `{}`", Key::kWorld, format_->key));
+        return false;
+      }
+      found = other;
+      format_ = &format;
     }
-    if (sdf == nullptr && urdf == nullptr) return true;
-    is_sdf_ = sdf != nullptr;
-    const YamlEntry entry = is_sdf_ ? *sdf : *urdf;
+    if (found == nullptr) return true;
+    const YamlEntry entry = *found;
     read_request(entry);
     read_folders();
     if (sink_.error_count() != errors_before) return false;
@@ -191,10 +227,12 @@ class WorldImporter {
     if (!loaded) return false;
     file_ = *loaded;
     input_.text = std::string(files_[file_].text());
+    input_.folder = base::real_path(path).parent_path();
+    input_.admits = [&](const std::filesystem::path& one) { return gate_.admits(one); };
     input_.find_mesh = [&](const std::string& uri, const std::string& from) {
       return mesh_file(uri, from.empty() ? path : std::filesystem::path(from));
     };
-    const ImportedWorld made = is_sdf_ ? import_sdf(input_) : import_urdf(input_);
+    const ImportedWorld made = format_->read(input_);
     for (const std::string& one : made.files) files_.note_input(one);
     if (made.fault) {
       sink_.error(codes::kBadImport, range_at(made.fault->offset), made.fault->message);
@@ -214,7 +252,8 @@ class WorldImporter {
       return;
     }
     YamlFields fields(entry.value, key_text(entry.key), sink_);
-    fields.only({Key::kFile, Key::kAtM, Key::kYawRad, is_sdf_ ? Key::kFile : Key::kFixed});
+    const bool is_robot = format_->key == Key::kUrdf;
+    fields.only({Key::kFile, Key::kAtM, Key::kYawRad, is_robot ? Key::kFixed : Key::kFile});
     if (const auto* file = fields.require(Key::kFile)) set_file(*file, Key::kFile);
     read_vector(fields, Key::kAtM, input_.p_WI);
     fields.number(Key::kYawRad, kAnyNumber, input_.yaw_rad);
@@ -243,9 +282,8 @@ class WorldImporter {
   }
 
   bool is_there(const YamlEntry& entry) {
-    if (is_sdf_ ? reads_sdf() : reads_urdf()) return true;
-    sink_.error(codes::kImportUnavailable, entry.key_range, entry.key,
-                is_sdf_ ? "libsdformat-dev" : "liburdfdom-dev");
+    if (format_->is_there()) return true;
+    sink_.error(codes::kImportUnavailable, entry.key_range, entry.key, format_->package);
     return false;
   }
 
@@ -302,8 +340,8 @@ class WorldImporter {
       solver.number("gravity_m_s2", *made.gravity_m_s2);
       under.put(Key::kSolver, solver.take());
     }
-    std::erase_if(world_.entries, [](const YamlEntry& entry) {
-      return entry.key == Key::kSdf || entry.key == Key::kUrdf || entry.key == Key::kModels;
+    std::erase_if(world_.entries, [&](const YamlEntry& entry) {
+      return entry.key == format_->key || entry.key == Key::kModels;
     });
     const auto range = world_.range;
     world_ = merged(under.take(), std::move(world_));
@@ -338,7 +376,7 @@ class WorldImporter {
   const base::PathGate& gate_;
   base::SourceFiles& files_;
   base::DiagnosticSink& sink_;
-  bool is_sdf_ = false;
+  const ImportFormat* format_ = nullptr;
   base::SourceRange file_range_;
   std::string file_text_;
   base::FileId file_;

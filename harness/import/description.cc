@@ -105,6 +105,7 @@ class Assembler {
     double rough = -1.0;
     for (const LinkShape& shape : link.shapes) {
       if (shape.mesh) out.meshes.emplace(body.shapes.size(), *shape.mesh);
+      if (!shape.corners.empty()) out.hulls.emplace(body.shapes.size(), shape.corners);
       BodyShape one;
       one.form = shape.form;
       one.size_m = shape.size_m;

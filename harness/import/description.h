@@ -18,7 +18,8 @@ struct LinkShape {
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
   Eigen::Isometry3d X_LS = Eigen::Isometry3d::Identity();
   std::optional<double> friction;
-  std::optional<MeshUse> mesh = {};  // then form and size say nothing
+  std::optional<MeshUse> mesh = {};           // then form and size say nothing
+  std::vector<Eigen::Vector3d> corners = {};  // of kHull, in its frame
 };
 
 struct LinkDescription {

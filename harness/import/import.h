@@ -20,7 +20,10 @@ struct ImportInput {
   std::vector<std::filesystem::path> folders;
   Eigen::Vector3d p_WI = Eigen::Vector3d::Zero();  // where its origin is put [m]
   double yaw_rad = 0.0;
-  bool fixed = false;  // a robot's root to the world
+  bool fixed = false;                 // a robot's root to the world
+  std::filesystem::path folder = {};  // of the file
+  /// May a file be read, when it lies in one of the folders? Empty: it may.
+  std::function<bool(const std::filesystem::path& path)> admits = {};
   /// The file of a mesh that is named so in the description at `from` (empty: in `text`); none
   /// where it is not to be had.
   std::function<std::optional<std::string>(const std::string& uri, const std::string& from)>
@@ -37,7 +40,8 @@ struct MeshUse {
 struct ImportedBody {
   BodySpec spec;
   std::size_t offset = 0;
-  std::map<std::size_t, MeshUse> meshes = {};  // by the number of the shape
+  std::map<std::size_t, MeshUse> meshes = {};                      // by the number of the shape
+  std::map<std::size_t, std::vector<Eigen::Vector3d>> hulls = {};  // corners, likewise
 };
 struct ImportedJoint {
   JointSpec spec;
@@ -66,10 +70,12 @@ struct ImportedWorld {
 /// Was the library that reads the format there when this was built?
 bool reads_sdf();
 bool reads_urdf();
+bool reads_mjcf();
 
 /// Hands only texts that `outline_of` lets pass to the library, whose own messages are kept back.
 /// Not to be called by two threads at once.
 ImportedWorld import_sdf(const ImportInput& input);
 ImportedWorld import_urdf(const ImportInput& input);
+ImportedWorld import_mjcf(const ImportInput& input);
 
 }  // namespace parallax::harness

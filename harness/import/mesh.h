@@ -29,6 +29,13 @@ struct MeshCorners {
   double hull_volume = 0.0;
 };
 
+/// What a hull adds to its mesh, or what it loses, where that is worth a word.
+struct MeshLoss {
+  std::string what;  // a kind, as LeftOut's
+  std::string of;    // which mesh, and how much
+};
+std::vector<MeshLoss> losses_of(const MeshCorners& made, const std::string& name);
+
 /// A hull of points, whose origin is `middle`.
 struct MadeHull {
   std::optional<std::string> fault;

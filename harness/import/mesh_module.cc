@@ -1,23 +1,17 @@
 #include "harness/import/mesh_module.h"
 
 #include <dlfcn.h>
-#include <fcntl.h>
-#include <poll.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include <fmt/format.h>
 
-#include <cerrno>
-#include <chrono>
-#include <csignal>
 #include <cstring>
 #include <string_view>
 #include <utility>
 
+#include "harness/import/limited_child.h"
+
 namespace parallax::harness {
 namespace {
 
-constexpr rlim_t kMostSeconds = 30, kMostBytes = rlim_t{3} << 30;
 constexpr std::size_t kMostAnswer = 1 << 16;
 
 /// Beside the program, as its run path says, or where it is installed. It stays loaded.
@@ -48,67 +42,17 @@ struct AnswerHead {
   double off = 0.0, volume = 0.0, hull_volume = 0.0;
 };
 
-void write_all(int fd, const void* data, std::size_t size) {
-  const auto* bytes = static_cast<const char*>(data);
-  while (size > 0) {
-    const auto done = ::write(fd, bytes, size);
-    if (done <= 0) ::_exit(1);
-    bytes += done;
-    size -= static_cast<std::size_t>(done);
-  }
-}
-
-[[noreturn]] void answer_and_end(int fd, const MeshCorners& said) {
+std::string answer_of(const MeshCorners& said) {
   const std::string fault = said.fault.value_or("").substr(0, 1000);
   const AnswerHead head{fault.size(), said.corners.size(), said.faces,      said.hull_corners,
                         said.off,     said.volume,         said.hull_volume};
-  write_all(fd, &head, sizeof(head));
-  write_all(fd, fault.data(), fault.size());
-  if (fault.empty())
-    write_all(fd, said.corners.data(), said.corners.size() * sizeof(Eigen::Vector3d));
-  ::_exit(0);
-}
-
-/// In the child: nothing is said on its streams, and nothing lasts.
-[[noreturn]] void read_in_child(int fd, const std::string& text, const std::string& extension,
-                                const Eigen::Vector3d& scale) {
-  const rlimit time{kMostSeconds, kMostSeconds}, memory{kMostBytes, kMostBytes}, none{0, 0};
-  ::setrlimit(RLIMIT_CPU, &time);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  ::setrlimit(RLIMIT_AS, &memory);  // sanitizers map far more than they use
-#endif
-  ::setrlimit(RLIMIT_CORE, &none);
-  ::setrlimit(RLIMIT_FSIZE, &none);
-  const int nowhere = ::open("/dev/null", O_RDWR);
-  for (int stream = 0; stream < 3; ++stream) ::dup2(nowhere, stream);
-  for (const int one : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGXCPU, SIGTERM, SIGINT}) {
-    ::signal(one, SIG_DFL);
+  std::string bytes(reinterpret_cast<const char*>(&head), sizeof(head));
+  bytes += fault;
+  if (fault.empty() && !said.corners.empty()) {
+    bytes.append(reinterpret_cast<const char*>(said.corners.front().data()),
+                 said.corners.size() * sizeof(Eigen::Vector3d));
   }
-  try {
-    answer_and_end(fd, functions()->read(text, extension, scale));
-  } catch (const std::exception&) {
-    answer_and_end(fd, faulty("cannot be read: it asks for too much memory, or is damaged"));
-  }
-}
-
-/// All that comes until the other side closes; none where it comes too late.
-std::optional<std::string> read_all(int fd) {
-  std::string out;
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(4 * kMostSeconds);
-  char buffer[4096];
-  while (out.size() <= kMostAnswer) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-        end - std::chrono::steady_clock::now());
-    pollfd wait{fd, POLLIN, 0};
-    const int ready = left.count() <= 0 ? 0 : ::poll(&wait, 1, static_cast<int>(left.count()));
-    if (ready < 0 && errno == EINTR) continue;
-    if (ready <= 0) return std::nullopt;
-    const auto count = ::read(fd, buffer, sizeof(buffer));
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return out;
-    out.append(buffer, static_cast<std::size_t>(count));
-  }
-  return std::nullopt;
+  return bytes;
 }
 
 MeshCorners parsed(const std::string& bytes) {
@@ -148,28 +92,41 @@ bool reads_meshes() { return functions() != nullptr; }
 MeshCorners mesh_corners(const std::string& text, const std::string& extension,
                          const Eigen::Vector3d& scale) {
   if (!reads_meshes()) return faulty("cannot be read: the module for meshes is not there");
-  int ends[2] = {-1, -1};
-  if (::pipe2(ends, O_CLOEXEC) != 0) return faulty("cannot be read: there is no pipe left");
-  const pid_t child = ::fork();
-  if (child == 0) read_in_child(ends[1], text, extension, scale);
-  ::close(ends[1]);
-  if (child < 0) {
-    ::close(ends[0]);
-    return faulty("cannot be read: no process can be started");
+  const auto work = [&] {
+    try {
+      return answer_of(functions()->read(text, extension, scale));
+    } catch (const std::exception&) {
+      return answer_of(faulty("cannot be read: it asks for too much memory, or is damaged"));
+    }
+  };
+  const ChildAnswer answer = answer_of_child(work, kMostAnswer, true);
+  switch (answer.end) {
+    case ChildEnd::kAnswered:
+      return parsed(answer.bytes);
+    case ChildEnd::kNotStarted:
+      return faulty("cannot be read: no process can be started");
+    case ChildEnd::kTooLong:
+      return faulty("cannot be read: it takes too long");
+    case ChildEnd::kCrashed:
+      break;
   }
-  const auto bytes = read_all(ends[0]);
-  ::close(ends[0]);
-  if (!bytes) ::kill(child, SIGKILL);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  return faulty("cannot be read: the reader of meshes crashed on it");
+}
+
+std::vector<MeshLoss> losses_of(const MeshCorners& made, const std::string& name) {
+  constexpr double kFuller = 1.05, kOff_m = 0.001;  // that is worth a word
+  std::vector<MeshLoss> out;
+  if (made.volume > 0.0 && made.hull_volume > kFuller * made.volume) {
+    out.push_back(
+        {"hollows of meshes, which become their convex hull",
+         fmt::format("{}: {:.2f} times its volume", name, made.hull_volume / made.volume)});
   }
-  if (!bytes || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)) {
-    return faulty("cannot be read: it takes too long");
+  if (made.off > kOff_m) {
+    out.push_back({fmt::format("corners of hulls that have more than {}", kMaxMeshCorners),
+                   fmt::format("{}: up to {:.1f} mm of {} corners", name, 1000.0 * made.off,
+                               made.hull_corners)});
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    return faulty("cannot be read: the reader of meshes crashed on it");
-  }
-  return parsed(*bytes);
+  return out;
 }
 
 MadeHull hull_of(const std::vector<Eigen::Vector3d>& points) {

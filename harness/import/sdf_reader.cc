@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <limits>
 #include <sdf/sdf.hh>
 #include <set>
-#include <sstream>
 #include <string_view>
 
 #include "harness/import/description.h"
+#include "harness/import/plain_path.h"
 #include "harness/import/sdf_module.h"
 
 namespace parallax::harness {
@@ -58,26 +57,6 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1));
 }
 
-/// A way down from a folder: plain names, no `..`, nothing hidden, no other scheme.
-bool is_plain_path(const std::string& path) {
-  if (path.empty() || path.front() == '/' || path.find_first_of("\\:&<>%?*\"'") != path.npos) {
-    return false;
-  }
-  for (const auto& part : fs::path(path)) {
-    if (part.empty() || part.string().front() == '.') return false;
-  }
-  return true;
-}
-
-/// Is every file of the folder a file, and no link? Links could lead out.
-bool holds_links(const fs::path& root, const fs::path& path) {
-  std::error_code error;
-  for (fs::path at = path; at != root && at.has_relative_path(); at = at.parent_path()) {
-    if (fs::is_symlink(fs::symlink_status(at, error))) return true;
-  }
-  return false;
-}
-
 /// Looks at every file that the library would open, before it does: those that `<include>` names,
 /// and what these name in turn.
 class IncludeGate {
@@ -121,7 +100,7 @@ class IncludeGate {
       std::error_code error;
       const fs::path there = folder / name;
       if (!fs::exists(fs::symlink_status(there, error))) continue;
-      if (holds_links(folder, there)) return fmt::format("`{}` leads through a link", shown);
+      if (leads_through_link(folder, there)) return fmt::format("`{}` leads through a link", shown);
       return fs::is_directory(there, error) ? check_folder(there, shown, around)
                                             : check_file(there, shown, around);
     }
@@ -175,16 +154,7 @@ class IncludeGate {
   }
 
   std::optional<std::string> read(const fs::path& path, std::string& text) {
-    std::error_code error;
-    const auto status = fs::symlink_status(path, error);
-    const auto shown = path.filename().string();
-    if (!fs::is_regular_file(status)) return fmt::format("there is no regular file `{}`", shown);
-    if (fs::file_size(path, error) > kMaxImportBytes) return fmt::format("`{}` is too long", shown);
-    std::ifstream in(path, std::ios::binary);
-    std::ostringstream all;
-    all << in.rdbuf();
-    if (!in) return fmt::format("`{}` cannot be read", shown);
-    text = all.str();
+    if (auto message = read_bounded(path, kMaxImportBytes, text)) return message;
     files_.insert(path.string());
     return std::nullopt;
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <set>
+#include <utility>
 
 namespace parallax::harness {
 namespace {
@@ -78,7 +79,7 @@ class OutlineReader {
     element.text = text_.substr(content_.back(), at_ - content_.back());
     open_.pop_back();
     content_.pop_back();
-    at_ = close + 1;
+    at_ = element.end = close + 1;
   }
 
   void read_start() {
@@ -105,6 +106,7 @@ class OutlineReader {
       if (!names.insert(name).second) return fail(at_, "an attribute is given twice");
       if (name == "name") element.name = value;
       if (name == "link") element.link = value;
+      element.attributes.push_back({name, value});
       at_ = end + 1;
     }
     if (out_.elements.size() == kMaxImportElements) {
@@ -120,8 +122,10 @@ class OutlineReader {
       return fail(start, fmt::format("there are more than {} models, links, joints and frames",
                                      kMaxImportParts));
     }
-    out_.elements.push_back(element);
-    if (here("/>")) {
+    const bool is_empty = here("/>");
+    if (is_empty) element.end = at_ + 2;
+    out_.elements.push_back(std::move(element));
+    if (is_empty) {
       at_ += 2;
       return;
     }
@@ -149,6 +153,13 @@ class OutlineReader {
 };
 
 }  // namespace
+
+const XmlAttribute* XmlElement::find(std::string_view attribute) const {
+  for (const XmlAttribute& one : attributes) {
+    if (one.name == attribute) return &one;
+  }
+  return nullptr;
+}
 
 bool is_part(const XmlElement& element) {
   return element.tag == "model" || element.tag == "link" || element.tag == "joint" ||

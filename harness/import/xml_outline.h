@@ -14,13 +14,22 @@ inline constexpr std::size_t kMaxImportDepth = 64;
 inline constexpr std::size_t kMaxImportElements = 30'000;
 inline constexpr std::size_t kMaxImportParts = 1'000;
 
+/// As written; the value without its quotes.
+struct XmlAttribute {
+  std::string_view name, value;
+};
+
 struct XmlElement {
   std::string_view tag;
   std::string_view name;              // its attribute of that name, as written
   std::string_view link;              // its attribute of that name, as written
   std::string_view text;              // what is between its tags, as written
-  std::size_t offset = 0;             // of its tag in the text
+  std::size_t offset = 0, end = 0;    // of its tag in the text, and past its end tag
   std::optional<std::size_t> parent;  // number of the element around it
+  std::vector<XmlAttribute> attributes = {};
+
+  /// Null where it has none of that name.
+  const XmlAttribute* find(std::string_view attribute) const;
 };
 
 struct TextFault {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace parallax::harness {
+
+enum class ChildEnd : std::uint8_t { kAnswered, kNotStarted, kTooLong, kCrashed };
+
+struct ChildAnswer {
+  ChildEnd end = ChildEnd::kAnswered;
+  std::string bytes;
+};
+
+/// What `work` gives in a process of its own, with 30 s and 3 GiB, in which nothing is said and
+/// nothing lasts: what a library makes of a hostile file does no harm here. With `opens_files`
+/// false the process can open none. `work` should throw nothing; what it throws is a crash.
+ChildAnswer answer_of_child(const std::function<std::string()>& work, std::size_t most_bytes,
+                            bool opens_files);
+
+}  // namespace parallax::harness

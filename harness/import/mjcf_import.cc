@@ -1,0 +1,436 @@
+// Worlds in MJCF: vetted here, read in a process of its own, taken over here.
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "harness/import/description.h"
+#include "harness/import/limited_child.h"
+#include "harness/import/mesh.h"
+#include "harness/import/mjcf_apart.h"
+#include "harness/import/mjcf_module.h"
+#include "harness/import/mjcf_places.h"
+#include "harness/import/mjcf_text.h"
+
+namespace parallax::harness {
+namespace {
+
+#ifdef PARALLAX_HAS_MJCF
+
+/// Beside the program, as its run path says, or where it is installed. It stays loaded.
+ReadMjcf* loaded_mjcf_reader() {
+  static ReadMjcf* const kReader = []() -> ReadMjcf* {
+    for (const auto& file :
+         {std::string(kMjcfModule), std::string(PARALLAX_MODULES) + "/" + kMjcfModule}) {
+      void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+      if (module == nullptr) continue;
+      if (void* reader = ::dlsym(module, kMjcfReader)) return reinterpret_cast<ReadMjcf*>(reader);
+    }
+    return nullptr;
+  }();
+  return kReader;
+}
+
+#else
+
+ReadMjcf* loaded_mjcf_reader() { return nullptr; }
+
+#endif
+
+MjcfModel no_model(std::string why) {
+  MjcfModel out;
+  out.fault = std::move(why);
+  return out;
+}
+
+MjcfModel read_apart(const std::vector<MjcfFile>& files) {
+  ReadMjcf* const read = loaded_mjcf_reader();
+  if (read == nullptr) return no_model("the module that reads MJCF is not there");
+  const auto work = [&] {
+    MjcfModel model;
+    if (!read(PARALLAX_IMPORT_VERSION, files, model)) {
+      model.fault = "the module that reads MJCF is of another version";
+    }
+    return bytes_of(model);
+  };
+  const ChildAnswer answer = answer_of_child(work, kMaxMjcfAnswer, false);
+  switch (answer.end) {
+    case ChildEnd::kAnswered:
+      break;
+    case ChildEnd::kNotStarted:
+      return no_model("no process can be started to read it");
+    case ChildEnd::kTooLong:
+      return no_model("it takes too long to read");
+    case ChildEnd::kCrashed:
+      return no_model("MuJoCo's reader crashed on it");
+  }
+  auto model = model_of(answer.bytes);
+  return model ? *std::move(model) : no_model("MuJoCo's reader broke off");
+}
+
+Eigen::Isometry3d isometry_from(const MjcfFrame& frame) {
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  X.translation() = frame.p;
+  const auto& q = frame.wxyz;
+  X.linear() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+  return X;
+}
+
+bool is_met(const MjcfGeom& geom) { return geom.contact_type != 0 || geom.contact_affinity != 0; }
+
+/// Corners of a hull that touches an ellipsoid from inside, at the ends of its axes among others.
+std::vector<Eigen::Vector3d> ellipsoid_corners(const Eigen::Vector3d& radii) {
+  constexpr int kRings = 7, kPerRing = 8;
+  std::vector<Eigen::Vector3d> out = {{0.0, 0.0, radii.z()}, {0.0, 0.0, -radii.z()}};
+  for (int ring = 1; ring <= kRings; ++ring) {
+    const double polar = std::numbers::pi * ring / (kRings + 1);
+    for (int i = 0; i < kPerRing; ++i) {
+      const double turn = 2.0 * std::numbers::pi * i / kPerRing;
+      out.push_back(radii.cwiseProduct(Eigen::Vector3d(
+          std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar))));
+    }
+  }
+  return out;
+}
+
+/// The triangles of a mesh in STL's binary form, which keeps single numbers as they are.
+std::string stl_of(const MjcfMesh& mesh) {
+  std::string out(80, ' ');
+  const auto put = [&](const void* data, std::size_t size) {
+    out.append(static_cast<const char*>(data), size);
+  };
+  const auto count = static_cast<std::uint32_t>(mesh.faces.size() / 3);
+  put(&count, sizeof(count));
+  const float no_normal[3] = {0.0F, 0.0F, 0.0F};
+  const std::uint16_t no_colour = 0;
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    if (i % 3 == 0) put(no_normal, sizeof(no_normal));
+    put(&mesh.points[3 * mesh.faces[i]], 3 * sizeof(float));
+    if (i % 3 == 2) put(&no_colour, sizeof(no_colour));
+  }
+  return out;
+}
+
+class MjcfImporter {
+ public:
+  MjcfImporter(const ImportInput& input, const MjcfText& text, const MjcfModel& model,
+               ImportedWorld& world)
+      : input_(input), model_(model), places_(text), world_(world) {}
+
+  void run() {
+    if (model_.fault) {
+      const auto place = places_.line(model_.fault_line, model_.fault_tag);
+      return fault(place.offset, place.inside + *model_.fault);
+    }
+    set_gravity();
+    count_parts();
+    name_links();
+    for (std::uint32_t i = 0; i < model_.bodies.size() && !world_.fault; ++i) add_body(i);
+    for (std::uint32_t i = 1; i < model_.bodies.size() && !world_.fault; ++i) add_joints(i);
+    if (world_.fault) return;
+    set_apart(model_, sides_, floors_, out_.links, out_.left_out);
+    note_rest();
+    assemble(std::move(out_), world_);
+  }
+
+ private:
+  void fault(std::size_t offset, std::string message) {
+    if (!world_.fault) world_.fault = TextFault{offset, std::move(message)};
+  }
+  void leave(const std::string& what, const std::string& name, std::size_t offset) {
+    out_.left_out.add(what, name.empty() ? "unnamed" : name, offset);
+  }
+
+  void set_gravity() {
+    const Eigen::Vector3d& g = model_.gravity_m_s2;
+    if (g.x() != 0.0 || g.y() != 0.0 || !std::isfinite(g.z())) {
+      return fault(places_.first("option"), "gravity does not point along z");
+    }
+    world_.gravity_m_s2 = g.z();
+  }
+
+  void count_parts() {
+    parts_.resize(model_.bodies.size());
+    for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+      parts_[model_.joints[i].body].joints.push_back(i);
+    }
+    for (std::size_t i = 0; i < model_.geoms.size(); ++i) {
+      parts_[model_.geoms[i].body].geoms.push_back(i);
+    }
+    if (model_.bodies.size() + model_.joints.size() + parts_[0].geoms.size() > kMaxImportParts) {
+      fault(0, fmt::format("there are more than {} bodies, joints and geoms of the world",
+                           kMaxImportParts));
+    }
+  }
+
+  /// What has no name of its own gets one that nothing else has.
+  std::string unused(std::string name) {
+    while (!taken_.insert(plain_name(name)).second) name += "_";
+    return name;
+  }
+
+  void name_links() {
+    const std::set<std::string> ours = {"floor", "world"};
+    taken_ = ours;
+    for (const MjcfBody& body : model_.bodies) taken_.insert(plain_name(body.name));
+    for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+      const MjcfBody& body = model_.bodies[i];
+      const bool is_named = !body.name.empty() && !ours.contains(plain_name(body.name));
+      names_.push_back(is_named            ? body.name
+                       : body.name.empty() ? unused(fmt::format("body_{}", i))
+                                           : unused(body.name));
+      X_WB_.push_back(i == 0 ? origin() : X_WB_[body.parent] * isometry_from(body.frame));
+    }
+  }
+
+  Eigen::Isometry3d origin() const {
+    Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+    X.translation() = input_.p_WI;
+    X.linear() = Eigen::AngleAxisd(input_.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    return X;
+  }
+
+  void add_body(std::uint32_t i) {
+    const MjcfBody& body = model_.bodies[i];
+    const std::size_t offset = i == 0 ? 0 : places_.body(i);
+    if (!has_numbers(body)) {
+      return fault(offset, fmt::format("something of the body `{}` is no number", names_[i]));
+    }
+    LinkDescription link;
+    link.name = names_[i];
+    link.offset = offset;
+    link.X_WL = X_WB_[i];
+    link.is_static = body.is_static;
+    if (!body.is_static) {
+      link.mass_kg = body.mass_kg;
+      link.X_LC = isometry_from(body.centre);
+      link.I_C_kg_m2 = body.moments_kg_m2.asDiagonal();
+    }
+    MjcfSide side;
+    side.body = i;
+    for (std::size_t k = 0; k < parts_[i].geoms.size() && !world_.fault; ++k) {
+      const MjcfGeom& geom = model_.geoms[parts_[i].geoms[k]];
+      if (i != 0) {
+        add_geom(geom, places_.geom(i, k), link, side);
+        continue;
+      }
+      // What stands in the world by itself is a body of its own, with its own friction.
+      LinkDescription one = link;
+      MjcfSide own = side;
+      one.name = unused(geom.name.empty() ? fmt::format("static_{}", k) : geom.name);
+      one.offset = places_.geom(i, k);
+      add_geom(geom, one.offset, one, own);
+      if (!one.shapes.empty() || one.has_floor) add_link(std::move(one), std::move(own));
+    }
+    if (i == 0) return;
+    const bool is_bare = body.is_static && link.shapes.empty();  // holds others in their places
+    if (is_bare) {
+      bare_.insert(i);
+    } else {
+      add_link(std::move(link), std::move(side));
+    }
+  }
+
+  void add_link(LinkDescription link, MjcfSide side) {
+    side.link = out_.links.size();
+    if (!side.masks.empty()) sides_.push_back(std::move(side));
+    out_.links.push_back(std::move(link));
+  }
+
+  void add_geom(const MjcfGeom& geom, std::size_t offset, LinkDescription& link, MjcfSide& side) {
+    const std::string& name = geom.name.empty() ? link.name : geom.name;
+    if (!has_numbers(geom)) {
+      return fault(offset, fmt::format("something of the geom of `{}` is no number", link.name));
+    }
+    if (!is_met(geom)) return leave("visuals", name, offset);
+    LinkShape shape;
+    shape.X_LS = isometry_from(geom.frame);
+    shape.friction = geom.friction;
+    note_contact(geom, name, offset);
+    const double radius_m = geom.size.x(), half_m = geom.size.y();
+    switch (geom.form) {
+      case MjcfForm::kPlane:
+        return add_plane(geom, name, offset, shape, link, side);
+      case MjcfForm::kHeightField:
+        return leave("height fields", name, offset);
+      case MjcfForm::kSphere:
+        set_round(shape, ShapeForm::kSphere, radius_m, 2.0 * radius_m);
+        break;
+      case MjcfForm::kCapsule:
+        set_round(shape, ShapeForm::kCapsule, radius_m, 2.0 * (half_m + radius_m));
+        break;
+      case MjcfForm::kCylinder:
+        set_round(shape, ShapeForm::kCylinder, radius_m, 2.0 * half_m);
+        break;
+      case MjcfForm::kBox:
+        shape.size_m = 2.0 * geom.size;
+        break;
+      case MjcfForm::kEllipsoid:
+        shape.form = ShapeForm::kHull;
+        shape.corners = ellipsoid_corners(geom.size);
+        if (!reads_meshes()) return leave("meshes that are not to be had", name, offset);
+        leave(fmt::format("roundings of ellipsoids, which become hulls of {} corners",
+                          shape.corners.size()),
+              name, offset);
+        break;
+      case MjcfForm::kMesh:
+        shape.form = ShapeForm::kHull;
+        if (!reads_meshes()) return leave("meshes that are not to be had", name, offset);
+        shape.corners = corners_of(geom.mesh, offset);
+        break;
+    }
+    link.shapes.push_back(std::move(shape));
+    side.masks.emplace_back(geom.contact_type, geom.contact_affinity);
+  }
+
+  static void set_round(LinkShape& shape, ShapeForm form, double radius_m, double length_m) {
+    shape.form = form;
+    shape.size_m = {2.0 * radius_m, 2.0 * radius_m, length_m};
+  }
+
+  /// Our floor is the plane z = 0.
+  void add_plane(const MjcfGeom& geom, const std::string& name, std::size_t offset,
+                 const LinkShape& shape, LinkDescription& link, const MjcfSide& side) {
+    const Eigen::Isometry3d X_WS = link.X_WL * shape.X_LS;
+    const bool is_level = X_WS.linear().col(2).isApprox(Eigen::Vector3d::UnitZ(), 1e-9);
+    if (!is_level || !link.is_static || std::abs(X_WS.translation().z()) > 1e-9) {
+      return leave("planes that are not the floor", name, offset);
+    }
+    link.has_floor = out_.has_floor = true;
+    out_.floor_friction = std::max(out_.floor_friction.value_or(0.0), geom.friction);
+    MjcfSide floor = side;
+    floor.masks = {{geom.contact_type, geom.contact_affinity}};
+    floors_.push_back(std::move(floor));
+  }
+
+  void note_contact(const MjcfGeom& geom, const std::string& name, std::size_t offset) {
+    if (geom.is_soft) leave("softness of contacts (solref, solimp)", name, offset);
+    if (geom.has_margin) leave("margins of contacts", name, offset);
+    if (geom.has_priority) leave("priorities of contacts", name, offset);
+    if (geom.dimension == 1) leave("contacts without friction (condim 1)", name, offset);
+    if (geom.dimension > 3) leave("friction against turning and rolling (condim)", name, offset);
+  }
+
+  /// Made once for each mesh, by the reader of meshes.
+  std::vector<Eigen::Vector3d> corners_of(std::uint32_t mesh, std::size_t offset) {
+    const auto found = hulls_.find(mesh);
+    if (found != hulls_.end()) return found->second;
+    const MjcfMesh& read = model_.meshes[mesh];
+    const std::string& name = read.name;
+    const MeshCorners made = mesh_corners(stl_of(read), "stl", Eigen::Vector3d::Ones());
+    if (made.fault) fault(offset, fmt::format("the mesh `{}` {}", name, *made.fault));
+    for (const MeshLoss& loss : losses_of(made, name)) leave(loss.what, loss.of, offset);
+    return hulls_.emplace(mesh, made.corners).first->second;
+  }
+
+  /// What holds a body: a joint, what it is welded to, or nothing.
+  void add_joints(std::uint32_t i) {
+    const MjcfBody& body = model_.bodies[i];
+    if (body.is_static) return;
+    const std::vector<std::size_t>& joints = parts_[i].joints;
+    if (joints.size() > 1) {
+      return fault(places_.joint(i, 1),
+                   fmt::format("the body `{}` has {} joints, and a body is taken over with one",
+                               names_[i], joints.size()));
+    }
+    JointDescription one;
+    one.parent = bare_.contains(body.parent) || body.parent == 0 ? "" : names_[body.parent];
+    one.child = names_[i];
+    one.offset = places_.body(i);
+    if (joints.empty()) {
+      one.name = unused_joint(names_[i] + "_weld");
+    } else if (model_.joints[joints.front()].type == MjcfJointType::kFree) {
+      return;
+    } else {
+      set_joint(model_.joints[joints.front()], i, one);
+    }
+    out_.joints.push_back(std::move(one));
+  }
+
+  /// Of the names that joints have in the file.
+  std::string unused_joint(std::string name) const {
+    const auto is_taken = [&](const MjcfJoint& joint) {
+      return plain_name(joint.name) == plain_name(name);
+    };
+    while (std::any_of(model_.joints.begin(), model_.joints.end(), is_taken)) name += "_";
+    return name;
+  }
+
+  void set_joint(const MjcfJoint& joint, std::uint32_t body, JointDescription& one) {
+    one.offset = places_.joint(body, 0);
+    one.name = joint.name.empty() ? unused_joint(names_[body] + "_joint") : joint.name;
+    if (!has_numbers(joint)) {
+      return fault(one.offset, fmt::format("something of the joint `{}` is no number", one.name));
+    }
+    if (joint.type == MjcfJointType::kBall) {
+      return leave("joints of other types (held fast)", one.name, one.offset);
+    }
+    one.type = joint.type == MjcfJointType::kHinge ? JointType::kHinge : JointType::kSlider;
+    one.axis_W = X_WB_[body].linear() * joint.axis_B;
+    one.p_WA = X_WB_[body] * joint.p_BJ;
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    one.low = joint.is_limited ? joint.low : -kNone;
+    one.high = joint.is_limited ? joint.high : kNone;
+    one.damping = joint.damping;
+    one.friction = joint.friction;
+    if (joint.stiffness != 0.0) leave("springs of joints", one.name, one.offset);
+    if (joint.armature != 0.0) {
+      leave("inertia of what drives joints (armature)", one.name, one.offset);
+    }
+    if (joint.is_soft) leave("softness of joints (solref, solimp)", one.name, one.offset);
+  }
+
+  void note_rest() {
+    for (const MjcfRest& one : model_.rest) {
+      const auto offset = places_.first(one.tag);
+      const std::string first = one.first.empty() ? "unnamed" : one.first;
+      for (std::size_t i = 0; i < one.count; ++i) out_.left_out.add(one.kind, first, offset);
+    }
+  }
+
+  struct Parts {
+    std::vector<std::size_t> joints, geoms;
+  };
+  const ImportInput& input_;
+  const MjcfModel& model_;
+  MjcfPlaces places_;
+  ImportedWorld& world_;
+  Description out_;
+  std::vector<Parts> parts_;  // by body, as the next two
+  std::vector<std::string> names_;
+  std::vector<Eigen::Isometry3d> X_WB_;
+  std::set<std::string> taken_;
+  std::set<std::uint32_t> bare_;
+  std::vector<MjcfSide> sides_, floors_;
+  std::map<std::uint32_t, std::vector<Eigen::Vector3d>> hulls_;
+};
+
+}  // namespace
+
+bool reads_mjcf() { return loaded_mjcf_reader() != nullptr; }
+
+ImportedWorld import_mjcf(const ImportInput& input) {
+  ImportedWorld world;
+  if (!reads_mjcf()) {
+    world.fault = TextFault{0, "this build reads no MJCF"};
+    return world;
+  }
+  MjcfText text = vetted_mjcf(input);
+  world.files = text.read;
+  world.fault = text.fault;
+  if (world.fault) return world;
+  const MjcfModel model = read_apart(text.files);
+  MjcfImporter(input, text, model, world).run();
+  if (!world.fault) {
+    world.left_out.insert(world.left_out.end(), text.left_out.begin(), text.left_out.end());
+  }
+  return world;
+}
+
+}  // namespace parallax::harness
