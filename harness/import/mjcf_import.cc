@@ -86,7 +86,7 @@ bool is_met(const MjcfGeom& geom) { return geom.contact_type != 0 || geom.contac
 
 /// Corners of a hull that touches an ellipsoid from inside, at the ends of its axes among others.
 std::vector<Eigen::Vector3d> ellipsoid_corners(const Eigen::Vector3d& radii) {
-  constexpr int kRings = 7, kPerRing = 8;
+  constexpr int kRings = 5, kPerRing = 12;
   std::vector<Eigen::Vector3d> out = {{0.0, 0.0, radii.z()}, {0.0, 0.0, -radii.z()}};
   for (int ring = 1; ring <= kRings; ++ring) {
     const double polar = std::numbers::pi * ring / (kRings + 1);

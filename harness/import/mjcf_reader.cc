@@ -7,6 +7,7 @@
 #include <array>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <string_view>
 
@@ -42,6 +43,7 @@ void set_fault(const std::string& said, MjcfModel& out) {
   for (const std::string_view front : {"XML ", "Error: ", "Error "}) {
     if (rest.starts_with(front)) rest.remove_prefix(front.size());
   }
+  std::string_view object;
   auto end = rest.size();
   for (const std::string_view place : {"\nElement '", "\nObject name ="}) {
     const auto at = rest.rfind(place);
@@ -54,13 +56,23 @@ void set_fault(const std::string& said, MjcfModel& out) {
         out.fault_line = std::strtoull(std::string(tail.substr(digit)).c_str(), nullptr, 10);
       }
     }
+    const auto name = tail.substr(place.size());
     if (place.starts_with("\nElement")) {
-      const auto name = tail.substr(place.size());
       out.fault_tag = name.substr(0, name.find('\''));
+    } else {
+      object = name.substr(0, name.find(", id"));
+      object.remove_prefix(std::min(object.size(), object.find_first_not_of(' ')));
     }
   }
+  for (const char* tag : {"geom", "joint", "mesh"}) {
+    if (!out.fault_tag.empty() || out.fault_line == 0) break;
+    if (rest.substr(0, end).find(fmt::format(" {} '", tag)) != rest.npos) out.fault_tag = tag;
+  }
   out.fault = in_one_line(std::string(rest.substr(0, end)));
-  if (out.fault->empty()) out.fault = "MuJoCo refuses it without a word";
+  if (!object.empty() && out.fault->find(object) == std::string::npos) {
+    *out.fault += in_one_line(fmt::format(" (`{}`)", object));
+  }
+  if (out.fault_line == 0) out.fault = "MuJoCo does not say where: " + *out.fault;
 }
 
 Model loaded(const std::vector<MjcfFile>& files, MjcfModel& out) {
@@ -296,6 +308,9 @@ extern "C" __attribute__((visibility("default"))) bool parallax_read_mjcf(
   try {
     const Model compiled = loaded(files, model);
     if (compiled != nullptr) Translator(*compiled, model).run();
+  } catch (const std::bad_alloc&) {
+    model = {};
+    model.fault = "it asks for too much memory";
   } catch (const std::exception& why) {
     model = {};
     set_fault(why.what(), model);

@@ -83,8 +83,8 @@ class FileShelf {
     for (const fs::path& folder : folders_) {
       std::error_code error;
       const fs::path path = folder / way;
-      if (!fs::exists(fs::symlink_status(path, error))) continue;
       if (leads_through_link(folder, path)) return fault("leads through a link");
+      if (!fs::exists(fs::symlink_status(path, error))) continue;
       if (input_.admits && !input_.admits(path)) return fault("lies where no file may be named");
       out.fault = read_bounded(path, most_bytes, out.bytes);
       out.path = path.lexically_normal().string();

@@ -79,6 +79,7 @@ Diagnosis diagnose(const std::atomic<bool>& stop) {
   checks.push_back(try_mujoco());
   checks.push_back(try_sdf());
   checks.push_back(try_urdf());
+  checks.push_back(try_mjcf());
   checks.push_back(try_meshes());
   checks.push_back(try_git(runner));
   checks.push_back(try_python(runner));

@@ -16,6 +16,9 @@ constexpr const char* kUrdf =
     "<?xml version='1.0'?><robot name='crate'><link name='side'><inertial><mass value='1'/>"
     "<inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' ixz='0' iyz='0'/></inertial>"
     "<collision><geometry><box size='0.2 0.2 0.2'/></geometry></collision></link></robot>";
+constexpr const char* kMjcf =
+    "<mujoco><worldbody><body name='crate' pos='0.5 0 0.1'><freejoint/>"
+    "<geom type='box' size='0.1 0.1 0.1' mass='1'/></body></worldbody></mujoco>";
 
 CheckUp missing(CheckUp check) {
   check.health = Health::kAbsent;
@@ -53,6 +56,14 @@ CheckUp try_urdf() {
   harness::ImportInput input;
   input.text = kUrdf;
   return judged(std::move(check), harness::import_urdf(input));
+}
+
+CheckUp try_mjcf() {
+  CheckUp check{.name = "MJCF", .package = "libmujoco-dev", .is_needed = false};
+  if (!harness::reads_mjcf()) return missing(std::move(check));
+  harness::ImportInput input;
+  input.text = kMjcf;
+  return judged(std::move(check), harness::import_mjcf(input));
 }
 
 CheckUp try_meshes() {

@@ -35,6 +35,7 @@ CheckUp try_simulator(const TrialRunner& runner);
 CheckUp try_mujoco();
 CheckUp try_sdf();
 CheckUp try_urdf();
+CheckUp try_mjcf();
 /// Also that a hull can be made.
 CheckUp try_meshes();
 CheckUp try_git(const TrialRunner& runner);
