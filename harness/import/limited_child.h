@@ -7,6 +7,7 @@
 
 namespace parallax::harness {
 
+/// kTooLong: it takes too long, or has too much to say.
 enum class ChildEnd : std::uint8_t { kAnswered, kNotStarted, kTooLong, kCrashed };
 
 struct ChildAnswer {

@@ -1,6 +1,5 @@
 // Worlds in MJCF: vetted here, read in a process of its own, taken over here.
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +10,6 @@
 #include <set>
 
 #include "harness/import/description.h"
-#include "harness/import/limited_child.h"
 #include "harness/import/mesh.h"
 #include "harness/import/mjcf_apart.h"
 #include "harness/import/mjcf_module.h"
@@ -20,59 +18,6 @@
 
 namespace parallax::harness {
 namespace {
-
-#ifdef PARALLAX_HAS_MJCF
-
-/// Beside the program, as its run path says, or where it is installed. It stays loaded.
-ReadMjcf* loaded_mjcf_reader() {
-  static ReadMjcf* const kReader = []() -> ReadMjcf* {
-    for (const auto& file :
-         {std::string(kMjcfModule), std::string(PARALLAX_MODULES) + "/" + kMjcfModule}) {
-      void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-      if (module == nullptr) continue;
-      if (void* reader = ::dlsym(module, kMjcfReader)) return reinterpret_cast<ReadMjcf*>(reader);
-    }
-    return nullptr;
-  }();
-  return kReader;
-}
-
-#else
-
-ReadMjcf* loaded_mjcf_reader() { return nullptr; }
-
-#endif
-
-MjcfModel no_model(std::string why) {
-  MjcfModel out;
-  out.fault = std::move(why);
-  return out;
-}
-
-MjcfModel read_apart(const std::vector<MjcfFile>& files) {
-  ReadMjcf* const read = loaded_mjcf_reader();
-  if (read == nullptr) return no_model("the module that reads MJCF is not there");
-  const auto work = [&] {
-    MjcfModel model;
-    if (!read(PARALLAX_IMPORT_VERSION, files, model)) {
-      model.fault = "the module that reads MJCF is of another version";
-    }
-    return bytes_of(model);
-  };
-  const ChildAnswer answer = answer_of_child(work, kMaxMjcfAnswer, false);
-  switch (answer.end) {
-    case ChildEnd::kAnswered:
-      break;
-    case ChildEnd::kNotStarted:
-      return no_model("no process can be started to read it");
-    case ChildEnd::kTooLong:
-      return no_model("it takes too long to read");
-    case ChildEnd::kCrashed:
-      return no_model("MuJoCo's reader crashed on it");
-  }
-  auto model = model_of(answer.bytes);
-  return model ? *std::move(model) : no_model("MuJoCo's reader broke off");
-}
 
 Eigen::Isometry3d isometry_from(const MjcfFrame& frame) {
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
@@ -253,40 +198,51 @@ class MjcfImporter {
     shape.X_LS = isometry_from(geom.frame);
     shape.friction = geom.friction;
     note_contact(geom, name, offset);
+    if (geom.form == MjcfForm::kPlane) return add_plane(geom, name, offset, shape, link, side);
+    if (!set_form(geom, name, offset, shape)) return;
+    link.shapes.push_back(std::move(shape));
+    side.masks.emplace_back(geom.contact_type, geom.contact_affinity);
+  }
+
+  /// False, and it is said, for what has no shape here.
+  bool set_form(const MjcfGeom& geom, const std::string& name, std::size_t offset,
+                LinkShape& shape) {
     const double radius_m = geom.size.x(), half_m = geom.size.y();
     switch (geom.form) {
       case MjcfForm::kPlane:
-        return add_plane(geom, name, offset, shape, link, side);
       case MjcfForm::kHeightField:
-        return leave("height fields", name, offset);
+        leave("height fields", name, offset);
+        return false;
       case MjcfForm::kSphere:
         set_round(shape, ShapeForm::kSphere, radius_m, 2.0 * radius_m);
-        break;
+        return true;
       case MjcfForm::kCapsule:
         set_round(shape, ShapeForm::kCapsule, radius_m, 2.0 * (half_m + radius_m));
-        break;
+        return true;
       case MjcfForm::kCylinder:
         set_round(shape, ShapeForm::kCylinder, radius_m, 2.0 * half_m);
-        break;
+        return true;
       case MjcfForm::kBox:
         shape.size_m = 2.0 * geom.size;
-        break;
+        return true;
       case MjcfForm::kEllipsoid:
-        shape.form = ShapeForm::kHull;
-        shape.corners = ellipsoid_corners(geom.size);
-        if (!reads_meshes()) return leave("meshes that are not to be had", name, offset);
-        leave(fmt::format("roundings of ellipsoids, which become hulls of {} corners",
-                          shape.corners.size()),
-              name, offset);
-        break;
       case MjcfForm::kMesh:
-        shape.form = ShapeForm::kHull;
-        if (!reads_meshes()) return leave("meshes that are not to be had", name, offset);
-        shape.corners = corners_of(geom.mesh, offset);
         break;
     }
-    link.shapes.push_back(std::move(shape));
-    side.masks.emplace_back(geom.contact_type, geom.contact_affinity);
+    if (!reads_meshes()) {
+      leave("meshes that are not to be had", name, offset);
+      return false;
+    }
+    shape.form = ShapeForm::kHull;
+    if (geom.form == MjcfForm::kMesh) {
+      shape.corners = corners_of(geom.mesh, offset);
+    } else {
+      shape.corners = ellipsoid_corners(geom.size);
+      leave(fmt::format("roundings of ellipsoids, which become hulls of {} corners",
+                        shape.corners.size()),
+            name, offset);
+    }
+    return true;
   }
 
   static void set_round(LinkShape& shape, ShapeForm form, double radius_m, double length_m) {
@@ -413,8 +369,6 @@ class MjcfImporter {
 
 }  // namespace
 
-bool reads_mjcf() { return loaded_mjcf_reader() != nullptr; }
-
 ImportedWorld import_mjcf(const ImportInput& input) {
   ImportedWorld world;
   if (!reads_mjcf()) {
@@ -425,7 +379,7 @@ ImportedWorld import_mjcf(const ImportInput& input) {
   world.files = text.read;
   world.fault = text.fault;
   if (world.fault) return world;
-  const MjcfModel model = read_apart(text.files);
+  const MjcfModel model = read_mjcf(text.files);
   MjcfImporter(input, text, model, world).run();
   if (!world.fault) {
     world.left_out.insert(world.left_out.end(), text.left_out.begin(), text.left_out.end());

@@ -7,7 +7,6 @@
 
 #include "harness/import/import.h"
 #include "harness/import/mesh.h"
-#include "harness/import/mjcf_model.h"
 #include "tests/harness/config/imported_world.h"
 
 namespace parallax::harness::test {
@@ -45,6 +44,10 @@ std::optional<Scenario> taken_over(Workspace& workspace, const std::string& text
   workspace.write("world.xml", text);
   return workspace.load(scenario_with(kMjcf));
 }
+
+struct BadText {
+  std::string text, report;  // how the report begins
+};
 
 /// The first report, which must be the only error of a file that is refused.
 std::string refusal_of(Workspace& workspace, const std::string& text) {
@@ -298,7 +301,7 @@ TEST_CASE("MJCF that cannot be is refused in one line, at its place") {
   for (int i = 0; i < 1001; ++i) many_bodies += "<body/>";
   for (int i = 0; i < 1'000'000; ++i) many_elements += "<a/>";
   for (int i = 0; i < 100'000; ++i) deep += "<body>";
-  for (const auto& [text, report] : std::vector<std::pair<std::string, std::string>>{
+  for (const BadText& one : std::vector<BadText>{
            {"", "E5143 at 1:1: the file cannot be taken over: there is no XML element"},
            {"<!DOCTYPE m [<!ENTITY a 'aa'><!ENTITY b '&a;&a;'>]><mujoco/>",
             "E5143 at 1:1: the file cannot be taken over: document types"},
@@ -352,10 +355,10 @@ TEST_CASE("MJCF that cannot be is refused in one line, at its place") {
            {file_with("<plugin/>"),
             "E5143 at 2:1: the file cannot be taken over: Schema violation: unrecognized element"},
        }) {
-    CAPTURE(text.substr(0, 300));
+    CAPTURE(one.text.substr(0, 300));
     Workspace workspace;
-    const auto said = refusal_of(workspace, text);
-    CHECK(said.substr(0, report.size()) == report);
+    const auto said = refusal_of(workspace, one.text);
+    CHECK(said.substr(0, one.report.size()) == one.report);
     CHECK(said.find('\n') == said.npos);
     CHECK_FALSE(std::filesystem::exists("MUJOCO_LOG.TXT"));
     CHECK_FALSE(std::filesystem::exists(workspace.folder() / "MUJOCO_LOG.TXT"));
@@ -371,7 +374,7 @@ TEST_CASE("files that MJCF names where none may be are refused, and includes tha
     return "<mujoco>\n" + more + "<asset>\n<mesh file='" + file + "'/></asset></mujoco>";
   };
   const std::string at_3 = "E5143 at 3:1: the file cannot be taken over: ";
-  for (const auto& [text, report] : std::vector<std::pair<std::string, std::string>>{
+  for (const BadText& one : std::vector<BadText>{
            {include("none.xml"), at_3 + "`none.xml` is neither beside the description nor"},
            {include("/etc/passwd"), at_3 + "`/etc/passwd` is not read"},
            {include("../out.xml"), at_3 + "`../out.xml` is not read"},
@@ -407,7 +410,7 @@ TEST_CASE("files that MJCF names where none may be are refused, and includes tha
            {"<mujoco>\n<worldbody>\n<geom file='x.stl'/></worldbody></mujoco>",
             at_3 + "a <geom> names a file"},
        }) {
-    CAPTURE(text);
+    CAPTURE(one.text);
     Workspace workspace;
     const auto folder = workspace.folder();
     std::filesystem::create_directories(folder / "parts");
@@ -431,8 +434,8 @@ TEST_CASE("files that MJCF names where none may be are refused, and includes tha
     std::filesystem::create_symlink(folder / "x.obj", folder / "linked.obj");
     std::filesystem::create_directory_symlink("/etc", folder / "way");
     REQUIRE(::mkfifo((folder / "pipe.xml").c_str(), 0600) == 0);
-    const auto said = refusal_of(workspace, text);
-    CHECK(said.substr(0, report.size()) == report);
+    const auto said = refusal_of(workspace, one.text);
+    CHECK(said.substr(0, one.report.size()) == one.report);
     CHECK(said.find('\n') == said.npos);
   }
 }
@@ -470,62 +473,6 @@ TEST_CASE("a program that was built without MuJoCo says so") {
   CHECK_FALSE(taken_over(workspace, bodies_with("")).has_value());
   CHECK(workspace.reports().front() ==
         "E5142 at 4:3: `mjcf` cannot be read: this program was built without libmujoco-dev");
-}
-
-/// A model with something of everything.
-MjcfModel some_model() {
-  MjcfModel model;
-  model.bodies.resize(2);
-  model.bodies[1].name = "crate";
-  model.bodies[1].mass_kg = 2.5;
-  model.joints.resize(1);
-  model.joints[0].body = 1;
-  model.joints[0].type = MjcfJointType::kHinge;
-  model.geoms.resize(2);
-  model.geoms[1].body = 1;
-  model.geoms[1].form = MjcfForm::kMesh;
-  model.meshes.resize(1);
-  model.meshes[0].points = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-  model.meshes[0].faces = {0, 1, 2};
-  model.excluded = {{0, 1}};
-  model.rest = {{"sensors", "sensor", 3, "eye"}};
-  return model;
-}
-
-TEST_CASE("what comes back of the process that reads is taken over whole, or not at all") {
-  const std::string bytes = bytes_of(some_model());
-  const auto model = model_of(bytes);
-  REQUIRE(model.has_value());
-  CHECK(bytes_of(*model) == bytes);
-  CHECK(model->bodies[1].name == "crate");
-  CHECK(model->rest[0].first == "eye");
-  for (std::size_t length = 0; length < bytes.size(); ++length) {
-    CHECK_FALSE(model_of(bytes.substr(0, length)).has_value());
-  }
-  CHECK_FALSE(model_of(bytes + "x").has_value());
-  // Whatever a byte becomes, what is read names nothing that is not there.
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    for (const int value : {0, 1, 2, 127, 255}) {
-      std::string other = bytes;
-      other[i] = static_cast<char>(value);
-      const auto read = model_of(other);
-      if (!read || read->fault) continue;
-      for (const MjcfGeom& geom : read->geoms) CHECK(geom.body < read->bodies.size());
-      for (const MjcfMesh& mesh : read->meshes) {
-        for (const auto corner : mesh.faces) CHECK(3 * corner + 2 < mesh.points.size());
-      }
-    }
-  }
-  for (const auto& spoil : std::vector<void (*)(MjcfModel&)>{
-           [](MjcfModel& m) { m.bodies[1].parent = 1; }, [](MjcfModel& m) { m.joints[0].body = 2; },
-           [](MjcfModel& m) { m.geoms[1].mesh = 1; },
-           [](MjcfModel& m) { m.meshes[0].faces[2] = 3; },
-           [](MjcfModel& m) { m.excluded[0].second = 7; },
-           [](MjcfModel& m) { m.bodies.clear(); }}) {
-    MjcfModel bad = some_model();
-    spoil(bad);
-    CHECK_FALSE(model_of(bytes_of(bad)).has_value());
-  }
 }
 
 }  // namespace

@@ -234,7 +234,7 @@ TEST_CASE("a robot description that cannot be is refused at its link or joint") 
     return "<joint name='" + parent + child + "' type='fixed'><parent link='" + parent +
            "'/><child link='" + child + "'/></joint>\n";
   };
-  for (const auto& [text, report] : std::vector<std::pair<std::string, std::string>>{
+  for (const auto& [written, report] : std::vector<std::pair<std::string, std::string>>{
            {"<robot/>", "E5143 at 1:1"},
            {"<robot name='r'></robot>", "E5143 at 1:1"},
            {with("<link name='b'/>"), "E5143 at "},
@@ -257,6 +257,7 @@ TEST_CASE("a robot description that cannot be is refused at its link or joint") 
             "E5143 at 4:65: the file cannot be taken over: the joint `j` has two elements <child>"},
            {with("<link name='b' name='c'/>"), "E5143 at 3:"},
        }) {
+    const std::string& text = written;
     CAPTURE(text);
     Workspace workspace;
     workspace.write("robot.urdf", text);
@@ -269,6 +270,8 @@ TEST_CASE("a robot description that cannot be is refused at its link or joint") 
 
 TEST_CASE("a world is in one format, and its file where files may be") {
   CHECK(Loaded("  sdf: a.sdf\n  urdf: b.urdf\n").first().starts_with("E5102"));
+  CHECK(Loaded("  mjcf: a.xml\n  urdf: b.urdf\n").first() ==
+        "E5102 at 4:3: `mjcf` is not a key of `world`, which has `urdf`");
   if (!reads_sdf()) {
     CHECK(Loaded("  sdf: a.sdf\n").first() ==
           "E5142 at 4:3: `sdf` cannot be read: this program was built without libsdformat-dev");
