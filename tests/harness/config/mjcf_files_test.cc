@@ -440,6 +440,21 @@ TEST_CASE("files that MJCF names where none may be are refused, and includes tha
   }
 }
 
+TEST_CASE("a file that lies beside the description, but where no file may be named, is not read") {
+  if (skips_mjcf()) return;
+  const Workspace workspace;
+  workspace.write("box.xml", "<x>" + box_at(0, "box") + "</x>");
+  ImportInput input;
+  input.text = bodies_with("<include file='box.xml'/>");
+  input.folder = workspace.folder();
+  CHECK_FALSE(import_mjcf(input).fault.has_value());
+  input.admits = [](const std::filesystem::path& path) { return path.filename() != "box.xml"; };
+  const auto made = import_mjcf(input);
+  REQUIRE(made.fault.has_value());
+  CHECK(made.fault->message == "`box.xml` lies where no file may be named");
+  CHECK(made.files.empty());
+}
+
 TEST_CASE("a mesh of a million faces is refused, as one that is too long is") {
   if (skips_mjcf()) return;
   Workspace workspace;
