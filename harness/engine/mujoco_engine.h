@@ -82,6 +82,11 @@ void build_engine(MujocoWorld::Engine& engine, const EngineInput& input);
 
 std::string name_of(const MujocoWorld::Engine& engine, const ContactSide& side);
 
+/// Where boxes touch each other is found by contacts_of from here on, in this process: of boxes
+/// that lie flat on each other but for a rounding, MuJoCo 2.2.2 leaves out corners, gives half the
+/// depth, and points that are deep in nothing.
+void replace_box_contacts();
+
 /// Finds contacts as bodies stand, and leaves those of pairs that may touch, with their friction.
 void find_contacts(MujocoWorld::Engine& engine);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tests/harness/engine/engines.h"
 #include "tests/harness/kitchen/kitchen_world.h"
 
 namespace parallax::harness {
@@ -37,11 +38,14 @@ Attempt fetch(const WorldSpec& spec, double robot_x_m, double robot_y_m, double 
 }
 
 TEST_CASE("a spoon in the middle of the drawer is seen and taken from every stance") {
-  for (const double d : {0.0, 0.06, 0.12}) {
-    const Attempt attempt = fetch(kitchen_world(), 0.66 + d, d, -0.05, 0.0);
-    CAPTURE(attempt.reason);
-    CHECK(attempt.seen);
-    CHECK(attempt.taken);
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    for (const double d : {0.0, 0.06, 0.12}) {
+      const Attempt attempt = fetch(stepped_by(engine, kitchen_world()), 0.66 + d, d, -0.05, 0.0);
+      CAPTURE(attempt.reason);
+      CHECK(attempt.seen);
+      CHECK(attempt.taken);
+    }
   }
 }
 
