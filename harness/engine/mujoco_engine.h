@@ -68,6 +68,7 @@ struct MujocoWorld::Engine {
   std::vector<double> masses_kg;                  // by LinkId
   std::vector<Eigen::Vector3d> moments_kg_m2;     // by LinkId: principal, of the specified mass
   std::vector<Touch> touches;                     // by BodyId
+  std::vector<double> asked_m_s2, lost_m_s2;      // by row of constraints: of solve_friction
   std::uint64_t digest = 0;
   bool is_broken = false;  // the engine gave up: lost until the next reset
   bool measure_times = false;
@@ -89,6 +90,9 @@ void replace_box_contacts();
 
 /// Finds contacts as bodies stand, and leaves those of pairs that may touch, with their friction.
 void find_contacts(MujocoWorld::Engine& engine);
+
+/// The forces of a step, in the place of mj_fwdConstraint: what slides does not come apart by it.
+void solve_friction(MujocoWorld::Engine& engine);
 
 /// What touches free bodies, of the contacts that were found.
 void note_touches(MujocoWorld::Engine& engine);

@@ -220,7 +220,7 @@ void step_once(Engine& engine) {
   aim_motors(engine);
   mj_fwdActuation(model, data);
   mj_fwdAcceleration(model, data);
-  mj_fwdConstraint(model, data);
+  solve_friction(engine);
   mj_Euler(model, data);
   update_places(engine);
   timer.add_lap_to(engine.statistics.solve_s);

@@ -4,14 +4,17 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "tests/harness/engine/engines.h"
+#include "tools/bench/engines/grips.h"
 
 namespace parallax::harness {
 namespace {
 
 TEST_CASE("machines move as mechanics says in every engine, the closer the shorter the step") {
-  constexpr double kRounding = 1e-9;
-  REQUIRE(tools::machines().size() == 5);
+  REQUIRE(tools::machines().size() == 6);
   for (const EngineKind engine : engines()) {
     for (const auto& machine : tools::machines()) {
       CAPTURE(to_string(engine));
@@ -19,8 +22,42 @@ TEST_CASE("machines move as mechanics says in every engine, the closer the short
       const double error = machine.error(engine, 0.002), at_a_quarter = machine.error(engine, 5e-4);
       CHECK(error < machine.bound);
       // Of first order it is a quarter.
-      CHECK((at_a_quarter < 0.5 * error || at_a_quarter < kRounding));
+      CHECK((at_a_quarter < 0.5 * error || at_a_quarter < machine.none));
     }
+  }
+}
+
+constexpr double kStep_s = 0.002;
+
+TEST_CASE("a grip and a slope hold what friction bears: MuJoCo in every direction") {
+  if (!has_mujoco()) return;  // engines() says so in the case above
+  for (const double degrees : {0.0, 20.0, 45.0}) {
+    CAPTURE(degrees);
+    const double angle = degrees * std::numbers::pi / 180.0;
+    CHECK(tools::least_grip(EngineKind::kMujoco, kStep_s, angle) ==
+          doctest::Approx(1.0).epsilon(0.01));
+    CHECK(tools::least_slope_friction(EngineKind::kMujoco, kStep_s, angle) ==
+          doctest::Approx(1.0).epsilon(0.01));
+  }
+}
+
+TEST_CASE("ODE bounds friction along two axes, and holds as much along both at the same time") {
+  for (const double degrees : {0.0, 20.0, 45.0}) {
+    CAPTURE(degrees);
+    const double angle = degrees * std::numbers::pi / 180.0;
+    const double expected = std::cos(angle);  // the larger of the two parts of the load
+    CHECK(tools::least_grip(EngineKind::kOde, kStep_s, angle) ==
+          doctest::Approx(expected).epsilon(0.02));
+    CHECK(tools::least_slope_friction(EngineKind::kOde, kStep_s, angle) ==
+          doctest::Approx(expected).epsilon(0.03));
+  }
+}
+
+TEST_CASE("a load that is held with twice the force that it needs stays where it is") {
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    CHECK(tools::creep_m_s(engine, kStep_s) < 2e-5);
+    CHECK(tools::creep_m_s(engine, 0.004) < 4e-5);
   }
 }
 

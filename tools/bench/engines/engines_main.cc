@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <numbers>
+#include <utility>
 #include <vector>
 
 #include "compiler/base/hash.h"
@@ -16,6 +18,7 @@
 #include "harness/robot/ode_simulator.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_feed.h"
+#include "tools/bench/engines/grips.h"
 #include "tools/bench/engines/machines.h"
 
 namespace parallax::tools {
@@ -50,10 +53,34 @@ void print_machines() {
       }
       if (errors.back() < kRounding) {
         fmt::print(" exact |\n");
+      } else if (errors[1] < machine.none) {
+        fmt::print(" |\n");
       } else {
         fmt::print(" {:.1f} |\n", std::log2(errors[1] / errors[3]) / 2.0);
       }
     }
+  }
+}
+
+void print_grips() {
+  constexpr double kStep_s = 0.002, kDegree_rad = std::numbers::pi / 180.0;
+  fmt::print("\n| what holds, at steps of 2 ms | engine | 0 | 15 | 30 | 45 degrees |\n");
+  fmt::print("|---|---|---|---|---|---|\n");
+  using Least = double (*)(EngineKind, double, double);
+  for (const auto& [name, least] :
+       {std::pair<const char*, Least>{"force of a grip", &least_grip},
+        std::pair<const char*, Least>{"friction on a slope", &least_slope_friction}}) {
+    for (const auto engine : engines()) {
+      fmt::print("| least {}, by Coulomb's law 1 | {} |", name, to_string(engine));
+      for (const double angle : {0.0, 15.0, 30.0, 45.0}) {
+        fmt::print(" {:.3f} |", least(engine, kStep_s, angle * kDegree_rad));
+      }
+      fmt::print("\n");
+    }
+  }
+  for (const auto engine : engines()) {
+    fmt::print("\ncreep of a load held with twice the force that it needs, {}: {:.2g} mm/s\n",
+               to_string(engine), 1e3 * creep_m_s(engine, kStep_s));
   }
 }
 
@@ -138,6 +165,7 @@ int main(int count, char** arguments) {
   using namespace parallax::tools;
   if (count == 1) {
     print_machines();
+    print_grips();
     return 0;
   }
   fmt::print("| scenario | engine | times real time | ended | building | memory |\n");
