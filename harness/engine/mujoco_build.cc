@@ -58,6 +58,23 @@ void find_joints(MujocoWorld::Engine& engine) {
   engine.targets.assign(static_cast<std::size_t>(model.nv), 0.0);
 }
 
+/// How far the springs of gantries are pressed in by what they carry as specified.
+void preload(MujocoWorld::Engine& engine) {
+  for (std::size_t i = 0; i < engine.gantries.size(); ++i) {
+    const auto& springs = engine.layout.gantries[engine.layout.gantries.id_at(i)].suspension;
+    double& preload_m = engine.preloads_m.emplace_back(0.0);
+    if (!springs) continue;
+    const auto assembly_of = [&](const TreeLink& link) {
+      return engine.layout.assembly_of[link.frame.index()];
+    };
+    const auto own = assembly_of(engine.tree.links[engine.gantries[i]]);
+    for (const TreeLink& link : engine.tree.links) {
+      if (!link.gravity || assembly_of(link) != own) continue;
+      preload_m -= link.mass_kg * engine.solver.gravity_m_s2 / springs->stiffness_n_m;
+    }
+  }
+}
+
 void find_geoms(MujocoWorld::Engine& engine, const std::vector<BodyId>& bodies) {
   const mjModel& model = *engine.model;
   engine.sides.assign(static_cast<std::size_t>(model.ngeom), nullptr);
@@ -83,6 +100,7 @@ void build_engine(MujocoWorld::Engine& engine, const EngineInput& input) {
   if (engine.data == nullptr) throw EngineFault("MuJoCo has no memory for the world");
   engine.touches.resize(engine.layout.bodies.size());
   find_joints(engine);
+  preload(engine);
   find_geoms(engine, world.geom_bodies);
 }
 

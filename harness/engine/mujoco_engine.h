@@ -67,6 +67,7 @@ struct MujocoWorld::Engine {
   std::vector<double> targets;                    // by degree of freedom: the motor's velocity
   std::vector<double> masses_kg;                  // by LinkId
   std::vector<Eigen::Vector3d> moments_kg_m2;     // by LinkId: principal, of the specified mass
+  std::vector<double> preloads_m;                 // by GantryId: of its spring; 0: it has none
   std::vector<Touch> touches;                     // by BodyId
   std::vector<double> asked_m_s2, lost_m_s2;      // by row of constraints: of solve_friction
   std::uint64_t digest = 0;

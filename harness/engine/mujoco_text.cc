@@ -152,13 +152,25 @@ class TextWriter {
         return;
       }
       case LinkJoint::kGantry:
-        // It slides along the parent's axes and turns about its centre of mass.
-        for (int axis = 0; axis < 3; ++axis) {
-          write_axis(id, axis, "slide", R_PL.transpose().col(axis), Eigen::Vector3d::Zero(), {}, {},
-                     0.0);
-        }
-        write_axis(id, 3, "hinge", Eigen::Vector3d::UnitZ(), link.p_LC, {}, {}, 0.0);
+        write_gantry(id, link, R_PL);
         return;
+    }
+  }
+
+  /// It slides along the parent's axes and turns about its centre of mass; if it has springs, its
+  /// height and its lean are theirs.
+  void write_gantry(LinkId id, const TreeLink& link, const Eigen::Matrix3d& R_PL) {
+    const auto& springs = layout_.gantries[layout_.gantries.id_at(link.joint_index)].suspension;
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool sprung = springs && axis == 2;
+      write_axis(id, axis, "slide", R_PL.transpose().col(axis), Eigen::Vector3d::Zero(), {}, {},
+                 sprung ? springs->damping_n_s_m : 0.0, sprung ? springs->stiffness_n_m : 0.0);
+    }
+    write_axis(id, 3, "hinge", Eigen::Vector3d::UnitZ(), link.p_LC, {}, {}, 0.0);
+    if (!springs) return;
+    for (const int part : {4, 5}) {
+      write_axis(id, part, "hinge", part == 4 ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitX(),
+                 link.p_LC, {}, {}, springs->damping_nm_s, springs->stiffness_nm_rad);
     }
   }
 
@@ -166,12 +178,17 @@ class TextWriter {
     return in_world(link).R.transpose() * spec.axis_W.normalized();
   }
 
+  /// The engine takes dampers at the end of a step and springs at its beginning; what the first
+  /// adds to the second is the force at the end of the step, too, so that stiff springs do not
+  /// swing up.
   void write_axis(LinkId id, int part, const char* type, const Eigen::Vector3d& axis,
                   const Eigen::Vector3d& at, const std::optional<double>& low,
-                  const std::optional<double>& high, double damping) {
+                  const std::optional<double>& high, double damping, double stiffness = 0.0) {
     constexpr double kNever = 1e6;  // a stop that is not there
-    out_ += fmt::format("<joint name='{}' type='{}' axis='{}' pos='{}' damping='{:.17g}'",
-                        joint_name(id.index(), part), type, numbers(axis), numbers(at), damping);
+    out_ += fmt::format(
+        "<joint name='{}' type='{}' axis='{}' pos='{}' damping='{:.17g}' stiffness='{:.17g}'",
+        joint_name(id.index(), part), type, numbers(axis), numbers(at),
+        damping + input_.spec.solver.timestep_s * stiffness, stiffness);
     if (low || high) {
       out_ += fmt::format(" limited='true' range='{:.17g} {:.17g}'", low.value_or(-kNever),
                           high.value_or(kNever));

@@ -356,10 +356,18 @@ void MujocoWorld::set_gantry(GantryId id, const Eigen::Vector3d& velocity_m_s,
                              double yaw_rate_rad_s) {
   constexpr double kAnyForce_n = 1e9;
   const JointSpec& spec = engine_->layout.gantries[id];
-  const int dof = engine_->joints[engine_->gantries[id.index()].index()].v;
+  const auto [q, dof] = engine_->joints[engine_->gantries[id.index()].index()];
   drive(*engine_, dof, velocity_m_s.x(), spec.max_force_n);
   drive(*engine_, dof + 1, velocity_m_s.y(), spec.max_force_n);
-  drive(*engine_, dof + 2, velocity_m_s.z(), spec.parent.empty() ? kAnyForce_n : spec.max_force_n);
+  if (spec.suspension) {
+    // The spring stands on what the child is sent to.
+    engine_->model->qpos_spring[q + 2] = engine_->data->qpos[q + 2] +
+                                         velocity_m_s.z() * engine_->solver.timestep_s +
+                                         engine_->preloads_m[id.index()];
+  } else {
+    drive(*engine_, dof + 2, velocity_m_s.z(),
+          spec.parent.empty() ? kAnyForce_n : spec.max_force_n);
+  }
   drive(*engine_, dof + 3, yaw_rate_rad_s, spec.max_torque_nm);
 }
 

@@ -265,11 +265,6 @@ void check_for_mujoco(const WorldSpec& spec, ProblemList& problems) {
       problems.add("bodies/" + body.name, "hulls and meshes are simulated by ODE alone");
     }
   }
-  for (const JointSpec& joint : spec.joints) {
-    if (joint.suspension) {
-      problems.add("joints/" + joint.name, "a base on springs is simulated by ODE alone");
-    }
-  }
 }
 
 }  // namespace
