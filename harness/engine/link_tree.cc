@@ -28,7 +28,7 @@ Eigen::Vector3d unit_moments_m2(const BodyShape& shape) {
   const double r2 = 0.25 * size.x() * size.x(), h = size.z();
   switch (shape.form) {
     case ShapeForm::kBox:
-    case ShapeForm::kHull:  // of its box; what uses trees refuses hulls (check_world)
+    case ShapeForm::kHull:  // which has its own
       break;
     case ShapeForm::kSphere:
       return Eigen::Vector3d::Constant(0.4 * r2);
@@ -77,8 +77,9 @@ PointMass mass_of(const BodySpec& body) {
   for (const BodyShape& shape : body.shapes) {
     const double mass_kg = body.mass_kg * volume_m3(shape) / volume;
     const Eigen::Matrix3d R = shape_rotation(shape);
-    const Eigen::Matrix3d own = (mass_kg * unit_moments_m2(shape)).asDiagonal();
-    parts.push_back({mass_kg, shape.p_BS, R * own * R.transpose()});
+    Eigen::Matrix3d own = unit_moments_m2(shape).asDiagonal();
+    if (shape.form == ShapeForm::kHull) own = shape.hull->moments_m2;
+    parts.push_back({mass_kg, centroid_B(shape), mass_kg * R * own * R.transpose()});
   }
   return joined(parts);
 }

@@ -91,10 +91,32 @@ void find_geoms(MujocoWorld::Engine& engine, const std::vector<BodyId>& bodies) 
   }
 }
 
+void find_hulls(MujocoWorld::Engine& engine, WorldText& world) {
+  const mjModel& model = *engine.model;
+  for (std::size_t i = 0; i < world.hulls.size(); ++i) {
+    MeshHull& mesh = engine.hulls.emplace_back();
+    mesh.hull = std::move(world.hulls[i]);
+    mesh.probe = number_of(model, mjOBJ_GEOM, hull_name(i));
+    mesh.p_HG = Eigen::Map<const Eigen::Vector3d>(model.geom_pos + 3 * mesh.probe);
+    Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R;
+    mju_quat2Mat(R.data(), model.geom_quat + 4 * mesh.probe);
+    mesh.R_HG = R;
+  }
+  engine.hull_of.assign(static_cast<std::size_t>(model.ngeom), nullptr);
+  for (const MeshHull& mesh : engine.hulls) {
+    engine.hull_of[static_cast<std::size_t>(mesh.probe)] = &mesh;
+  }
+  for (std::size_t i = 0; i < world.geom_hulls.size(); ++i) {
+    if (!world.geom_hulls[i]) continue;
+    const int geom = number_of(model, mjOBJ_GEOM, geom_name(i + 1));
+    engine.hull_of[static_cast<std::size_t>(geom)] = &engine.hulls[*world.geom_hulls[i]];
+  }
+}
+
 }  // namespace
 
 void build_engine(MujocoWorld::Engine& engine, const EngineInput& input) {
-  const WorldText world = write_mjcf(input);
+  WorldText world = write_mjcf(input);
   engine.model.reset(read_model(world.text));
   engine.data.reset(mj_makeData(engine.model.get()));
   if (engine.data == nullptr) throw EngineFault("MuJoCo has no memory for the world");
@@ -102,6 +124,7 @@ void build_engine(MujocoWorld::Engine& engine, const EngineInput& input) {
   find_joints(engine);
   preload(engine);
   find_geoms(engine, world.geom_bodies);
+  find_hulls(engine, world);
 }
 
 }  // namespace parallax::harness

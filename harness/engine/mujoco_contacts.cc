@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
-#include "harness/engine/box_contacts.h"
+#include "compiler/base/contract.h"
+#include "harness/engine/hull_contacts.h"
 #include "harness/engine/mujoco_engine.h"
 
 namespace parallax::harness {
@@ -31,17 +33,63 @@ bool is_near(const mjModel& model, const mjData& data, int geom, const Eigen::Ve
   return (place_of(data, geom) - p_W).squaredNorm() <= reach_m * reach_m;
 }
 
+using RowMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+/// Of a hull whose mesh a geom is.
+struct PlacedMesh {
+  Eigen::Vector3d p_WH;
+  Eigen::Matrix3d R_WH;
+};
+
+PlacedMesh place_of(const mjData& data, int geom, const MeshHull& mesh) {
+  const Eigen::Matrix3d R_WH =
+      Eigen::Map<const RowMatrix>(data.geom_xmat + 9 * geom) * mesh.R_HG.transpose();
+  return {place_of(data, geom) - R_WH * mesh.p_HG, R_WH};
+}
+
+const MeshHull& mesh_of(const Engine& engine, const ConvexHull* hull) {
+  const auto found = std::find_if(engine.hulls.begin(), engine.hulls.end(),
+                                  [&](const MeshHull& mesh) { return mesh.hull.get() == hull; });
+  PARALLAX_REQUIRE(found != engine.hulls.end(), "a hull of this world");
+  return *found;
+}
+
 /// The probe's shape, put where it is asked for. It collides with nothing by itself.
 int put_probe(Engine& engine, const Probe& probe) {
   mjModel& model = *engine.model;
   mjData& data = *engine.data;
-  const int geom = engine.probes[static_cast<std::size_t>(probe.form)];
-  Eigen::Map<Eigen::Vector3d>(model.geom_size + 3 * geom) = engine_size_m(probe.form, probe.size_m);
-  Eigen::Map<Eigen::Vector3d>(data.geom_xpos + 3 * geom) = probe.p_WS;
-  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data.geom_xmat + 9 * geom) = probe.R_WS;
-  model.geom_rbound[geom] = 0.5 * probe.size_m.norm();
+  Eigen::Vector3d p_WG = probe.p_WS;
+  Eigen::Matrix3d R_WG = probe.R_WS;
+  int geom = -1;
+  if (probe.form == ShapeForm::kHull) {
+    const MeshHull& mesh = mesh_of(engine, probe.hull.get());
+    geom = mesh.probe;
+    p_WG += R_WG * mesh.p_HG;
+    R_WG *= mesh.R_HG;
+  } else {
+    geom = engine.probes[static_cast<std::size_t>(probe.form)];
+    Eigen::Map<Eigen::Vector3d>(model.geom_size + 3 * geom) =
+        engine_size_m(probe.form, probe.size_m);
+    model.geom_rbound[geom] = 0.5 * probe.size_m.norm();
+  }
+  Eigen::Map<Eigen::Vector3d>(data.geom_xpos + 3 * geom) = p_WG;
+  Eigen::Map<RowMatrix>(data.geom_xmat + 9 * geom) = R_WG;
   return geom;
 }
+
+// The engine's hooks carry no context, so the thread that asks names the world.
+thread_local const Engine* t_engine = nullptr;
+
+class AskedWorld {
+ public:
+  explicit AskedWorld(const Engine& engine) : previous_(t_engine) { t_engine = &engine; }
+  ~AskedWorld() { t_engine = previous_; }
+  AskedWorld(const AskedWorld&) = delete;
+  AskedWorld& operator=(const AskedWorld&) = delete;
+
+ private:
+  const Engine* previous_;
+};
 
 /// How deep two geoms overlap; none where they do not touch.
 std::optional<double> depth_of(const Engine& engine, int a, int b) {
@@ -50,6 +98,7 @@ std::optional<double> depth_of(const Engine& engine, int a, int b) {
   const mjfCollision collide = mjCOLLISIONFUNC[model.geom_type[a]][model.geom_type[b]];
   if (collide == nullptr) return std::nullopt;
   std::array<mjContact, mjMAXCONPAIR> contacts;
+  const AskedWorld asked(engine);
   const int count = collide(&model, engine.data.get(), contacts.data(), a, b, 0.0);
   std::optional<double> deepest;
   for (int i = 0; i < count; ++i) {
@@ -70,15 +119,33 @@ std::optional<Found> probe_all(Engine& engine, const Probe& probe, const Counts&
   const mjModel& model = *engine.model;
   const int own = put_probe(engine, probe);
   const double radius_m = model.geom_rbound[own];
+  const Eigen::Vector3d p_W = place_of(*engine.data, own);
   std::optional<Found> found;
   for (int geom = 0; geom < model.ngeom; ++geom) {
     const ContactSide* side = engine.sides[static_cast<std::size_t>(geom)];
     if (side == nullptr || !counts(*side)) continue;
-    if (!is_near(model, *engine.data, geom, probe.p_WS, radius_m)) continue;
+    if (!is_near(model, *engine.data, geom, p_W, radius_m)) continue;
     const auto depth = depth_of(engine, own, geom);
     if (depth && (!found || *depth > found->depth_m)) found = Found{geom, *depth};
   }
   return found;
+}
+
+/// Where a ray of unit direction comes into a hull, or out of it where it begins in it.
+std::optional<double> ray_meets_hull(const ConvexHull& hull, const Eigen::Vector3d& from_H,
+                                     const Eigen::Vector3d& direction_H) {
+  double in_m = 0.0, out_m = std::numeric_limits<double>::infinity();
+  bool begins_inside = true;
+  for (std::size_t i = 0; i < hull.normals.size(); ++i) {
+    const double above_m = hull.normals[i].dot(from_H) - hull.offsets[i];
+    const double rate = hull.normals[i].dot(direction_H);
+    if (above_m > 0.0) begins_inside = false;
+    if (rate == 0.0 && above_m > 0.0) return std::nullopt;
+    if (rate < 0.0) in_m = std::max(in_m, -above_m / rate);
+    if (rate > 0.0) out_m = std::min(out_m, -above_m / rate);
+  }
+  if (in_m > out_m || out_m < 0.0) return std::nullopt;
+  return begins_inside ? out_m : in_m;
 }
 
 /// Along a ray of unit direction; none where the geom is not met.
@@ -94,6 +161,11 @@ std::optional<double> ray_meets_geom(const Engine& engine, int geom, const Eigen
   const Eigen::Vector3d d = place_of(data, geom) - from;
   const double radius_m = model.geom_rbound[geom];
   if (d.squaredNorm() - std::pow(d.dot(direction), 2) > radius_m * radius_m) return std::nullopt;
+  if (const MeshHull* mesh = engine.hull_of[static_cast<std::size_t>(geom)]) {
+    const PlacedMesh at = place_of(data, geom, *mesh);
+    return ray_meets_hull(*mesh->hull, at.R_WH.transpose() * (from - at.p_WH),
+                          at.R_WH.transpose() * direction);
+  }
   const double way_m =
       mju_rayGeom(data.geom_xpos + 3 * geom, data.geom_xmat + 9 * geom, model.geom_size + 3 * geom,
                   from.data(), direction.data(), model.geom_type[geom]);
@@ -132,10 +204,7 @@ PlacedBox box_of(const mjModel& model, const mjData& data, int geom) {
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data.geom_xmat + 9 * geom)};
 }
 
-/// In the place of the engine's own function. No geom has a margin.
-int collide_boxes(const mjModel* model, const mjData* data, mjContact* out, int a, int b,
-                  mjtNum /*margin*/) {
-  const BoxContacts found = contacts_of(box_of(*model, *data, a), box_of(*model, *data, b));
+int put_out(const BoxContacts& found, mjContact* out) {
   for (int i = 0; i < found.count; ++i) {
     const BoxContact& point = found.points[static_cast<std::size_t>(i)];
     out[i].dist = -point.depth_m;
@@ -146,9 +215,44 @@ int collide_boxes(const mjModel* model, const mjData* data, mjContact* out, int 
   return found.count;
 }
 
+/// In the place of the engine's own function. No geom has a margin.
+int collide_boxes(const mjModel* model, const mjData* data, mjContact* out, int a, int b,
+                  mjtNum /*margin*/) {
+  return put_out(contacts_of(box_of(*model, *data, a), box_of(*model, *data, b)), out);
+}
+
+Polyhedron polyhedron_of(const Engine& engine, const mjModel& model, const mjData& data, int geom) {
+  const MeshHull* mesh = engine.hull_of[static_cast<std::size_t>(geom)];
+  if (mesh == nullptr) return placed_box(box_of(model, data, geom));
+  const PlacedMesh place = place_of(data, geom, *mesh);
+  return placed_hull(*mesh->hull, place.p_WH, place.R_WH);
+}
+
+mjfCollision by_the_engine = nullptr;  // what it has for all that is convex
+
+/// A hull and a box, or two hulls: where a face lies on the other one, at corners of what they
+/// share.
+int collide_hulls(const mjModel* model, const mjData* data, mjContact* out, int a, int b,
+                  mjtNum margin) {
+  const int count = by_the_engine(model, data, out, a, b, margin);
+  if (count == 0 || t_engine == nullptr) return count;
+  const mjContact* const deepest = std::min_element(
+      out, out + count, [](const mjContact& x, const mjContact& y) { return x.dist < y.dist; });
+  const Eigen::Vector3d normal = Eigen::Map<const Eigen::Vector3d>(deepest->frame);
+  const BoxContacts found =
+      hull_contacts(polyhedron_of(*t_engine, *model, *data, a),
+                    polyhedron_of(*t_engine, *model, *data, b), normal, -deepest->dist);
+  return found.count > 0 ? put_out(found, out) : count;
+}
+
 }  // namespace
 
-void replace_box_contacts() { mjCOLLISIONFUNC[mjGEOM_BOX][mjGEOM_BOX] = &collide_boxes; }
+void replace_collisions() {
+  by_the_engine = mjCOLLISIONFUNC[mjGEOM_MESH][mjGEOM_MESH];
+  mjCOLLISIONFUNC[mjGEOM_BOX][mjGEOM_BOX] = &collide_boxes;
+  mjCOLLISIONFUNC[mjGEOM_BOX][mjGEOM_MESH] = &collide_hulls;
+  mjCOLLISIONFUNC[mjGEOM_MESH][mjGEOM_MESH] = &collide_hulls;
+}
 
 std::string name_of(const Engine& engine, const ContactSide& side) {
   return side.body ? engine.layout.bodies[*side.body].name : "floor";
@@ -157,6 +261,7 @@ std::string name_of(const Engine& engine, const ContactSide& side) {
 void find_contacts(Engine& engine) {
   constexpr double kLeastFriction = 1e-5;  // of the engine
   mjData& data = *engine.data;
+  const AskedWorld asked(engine);
   mj_collision(engine.model.get(), &data);
   const double erp = engine.solver.contact_erp.value_or(engine.solver.erp);
   int kept = 0;

@@ -39,17 +39,28 @@ std::string link_name(std::size_t link);
 std::string joint_name(std::size_t link, int part);
 std::string geom_name(std::size_t geom);
 inline constexpr const char* kFloorName = "floor";
+std::string hull_name(std::size_t hull);  // of its mesh, and of the probe of that form
 std::string probe_name(ShapeForm form);
 
 /// The world in the engine's own language, MJCF, and its shapes by number; number 0 is the floor.
 struct WorldText {
   std::string text;
-  std::vector<BodyId> geom_bodies;  // by geom_name, from 1
+  std::vector<BodyId> geom_bodies;                       // by geom_name, from 1
+  std::vector<std::optional<std::size_t>> geom_hulls;    // likewise; none: it is not one
+  std::vector<std::shared_ptr<const ConvexHull>> hulls;  // by hull_name
 };
 WorldText write_mjcf(const EngineInput& input);
 
 /// Half sides, or radius and half the length, as the engine wants them.
 Eigen::Vector3d engine_size_m(ShapeForm form, const Eigen::Vector3d& size_m);
+
+/// A hull, and its probe. The engine lays the frame of a mesh along its moments of inertia.
+struct MeshHull {
+  std::shared_ptr<const ConvexHull> hull;
+  int probe = -1;
+  Eigen::Vector3d p_HG = Eigen::Vector3d::Zero();  // the engine's frame in that of the hull [m]
+  Eigen::Matrix3d R_HG = Eigen::Matrix3d::Identity();
+};
 
 /// Everything behind MujocoWorld.
 struct MujocoWorld::Engine {
@@ -63,13 +74,15 @@ struct MujocoWorld::Engine {
   std::vector<JointPlace> joints;                 // by LinkId
   std::vector<LinkId> sliders, hinges, gantries;  // by SliderId, ...: what they move
   std::vector<const ContactSide*> sides;          // by the engine's number of a geom; null: probe
-  std::vector<int> probes;                        // by ShapeForm
-  std::vector<double> targets;                    // by degree of freedom: the motor's velocity
-  std::vector<double> masses_kg;                  // by LinkId
-  std::vector<Eigen::Vector3d> moments_kg_m2;     // by LinkId: principal, of the specified mass
-  std::vector<double> preloads_m;                 // by GantryId: of its spring; 0: it has none
-  std::vector<Touch> touches;                     // by BodyId
-  std::vector<double> asked_m_s2, lost_m_s2;      // by row of constraints: of solve_friction
+  std::vector<int> probes;                        // by ShapeForm, but for hulls
+  std::vector<MeshHull> hulls;
+  std::vector<const MeshHull*> hull_of;        // by the engine's number of a geom; null: none
+  std::vector<double> targets;                 // by degree of freedom: the motor's velocity
+  std::vector<double> masses_kg;               // by LinkId
+  std::vector<Eigen::Vector3d> moments_kg_m2;  // by LinkId: principal, of the specified mass
+  std::vector<double> preloads_m;              // by GantryId: of its spring; 0: it has none
+  std::vector<Touch> touches;                  // by BodyId
+  std::vector<double> asked_m_s2, lost_m_s2;   // by row of constraints: of solve_friction
   std::uint64_t digest = 0;
   bool is_broken = false;  // the engine gave up: lost until the next reset
   bool measure_times = false;
@@ -84,10 +97,11 @@ void build_engine(MujocoWorld::Engine& engine, const EngineInput& input);
 
 std::string name_of(const MujocoWorld::Engine& engine, const ContactSide& side);
 
-/// Where boxes touch each other is found by contacts_of from here on, in this process: of boxes
-/// that lie flat on each other but for a rounding, MuJoCo 2.2.2 leaves out corners, gives half the
-/// depth, and points that are deep in nothing.
-void replace_box_contacts();
+/// Where boxes and hulls touch each other is found by contacts_of and hull_contacts from here on,
+/// in this process: of boxes that lie flat on each other but for a rounding, MuJoCo 2.2.2 leaves
+/// out corners, gives half the depth, and points that are deep in nothing; hulls it has on few
+/// points.
+void replace_collisions();
 
 /// Finds contacts as bodies stand, and leaves those of pairs that may touch, with their friction.
 void find_contacts(MujocoWorld::Engine& engine);

@@ -35,8 +35,8 @@ const char* word_of(ShapeForm form) {
       return "cylinder";
     case ShapeForm::kCapsule:
       return "capsule";
-    case ShapeForm::kHull:  // refused by check_world
-      break;
+    case ShapeForm::kHull:
+      return "mesh";
   }
   return "";
 }
@@ -50,16 +50,26 @@ class TextWriter {
       const auto& parent = tree_.links[id].parent;
       children_[parent ? parent->index() + 1 : 0].push_back(id);
     }
+    for (const BodySpec& body : layout_.bodies) {
+      for (const BodyShape& shape : body.shapes) {
+        if (shape.hull && !hull_number(shape.hull.get())) hulls_.push_back(shape.hull);
+      }
+    }
   }
 
   WorldText write() {
     write_options();
+    write_hulls();
     out_ += "<worldbody>\n";
     out_ += fmt::format("<geom name='{}' type='plane' size='0 0 1'/>\n", kFloorName);
     for (const ShapeForm form :
          {ShapeForm::kBox, ShapeForm::kSphere, ShapeForm::kCylinder, ShapeForm::kCapsule}) {
       out_ += fmt::format("<geom name='{}' type='{}' size='1 1 1' contype='0' conaffinity='0'/>\n",
                           probe_name(form), word_of(form));
+    }
+    for (std::size_t i = 0; i < hulls_.size(); ++i) {
+      out_ += fmt::format("<geom name='{0}' type='mesh' mesh='{0}' contype='0' conaffinity='0'/>\n",
+                          hull_name(i));
     }
     for (std::size_t i = 0; i < layout_.bodies.size(); ++i) {
       if (!layout_.link_of[i]) write_geoms(layout_.bodies.id_at(i));
@@ -68,10 +78,28 @@ class TextWriter {
     out_ += "</worldbody>\n";
     write_exclusions();
     out_ += "</mujoco>\n";
-    return {std::move(out_), std::move(geom_bodies_)};
+    return {std::move(out_), std::move(geom_bodies_), std::move(geom_hulls_), std::move(hulls_)};
   }
 
  private:
+  std::optional<std::size_t> hull_number(const ConvexHull* hull) const {
+    for (std::size_t i = 0; i < hulls_.size(); ++i) {
+      if (hulls_[i].get() == hull) return i;
+    }
+    return std::nullopt;
+  }
+
+  /// The engine makes their faces itself.
+  void write_hulls() {
+    out_ += "<asset>\n";
+    for (std::size_t i = 0; i < hulls_.size(); ++i) {
+      out_ += fmt::format("<mesh name='{}' vertex='", hull_name(i));
+      for (const Eigen::Vector3d& vertex : hulls_[i]->vertices) out_ += numbers(vertex) + " ";
+      out_ += "'/>\n";
+    }
+    out_ += "</asset>\n";
+  }
+
   void write_options() {
     const SolverSpec& solver = input_.spec.solver;
     const std::string impedance = fmt::format("{} {} {} 0.5 2", kShallow, kDeep, kDeepFrom_m);
@@ -218,9 +246,12 @@ class TextWriter {
     const PoseInLink& place = tree_.in_link[id.index()];
     for (const BodyShape& shape : body.shapes) {
       geom_bodies_.push_back(id);
-      out_ += fmt::format("<geom name='{}' type='{}' size='{}' pos='{}' quat='{}'/>\n",
-                          geom_name(geom_bodies_.size()), word_of(shape.form),
-                          numbers(engine_size_m(shape.form, shape.size_m)),
+      geom_hulls_.push_back(hull_number(shape.hull.get()));
+      const std::string form =
+          shape.hull ? fmt::format("mesh='{}'", hull_name(*geom_hulls_.back()))
+                     : fmt::format("size='{}'", numbers(engine_size_m(shape.form, shape.size_m)));
+      out_ += fmt::format("<geom name='{}' type='{}' {} pos='{}' quat='{}'/>\n",
+                          geom_name(geom_bodies_.size()), word_of(shape.form), form,
                           numbers(place.p_LB + place.R_LB * shape.p_BS),
                           quaternion(place.R_LB * shape_rotation(shape)));
     }
@@ -232,6 +263,8 @@ class TextWriter {
   std::vector<std::vector<LinkId>> children_;  // of the world, then by LinkId
   std::string out_;
   std::vector<BodyId> geom_bodies_;
+  std::vector<std::optional<std::size_t>> geom_hulls_;
+  std::vector<std::shared_ptr<const ConvexHull>> hulls_;
 };
 
 }  // namespace
@@ -239,6 +272,7 @@ class TextWriter {
 std::string link_name(std::size_t link) { return fmt::format("link{}", link); }
 std::string joint_name(std::size_t link, int part) { return fmt::format("joint{}.{}", link, part); }
 std::string geom_name(std::size_t geom) { return fmt::format("geom{}", geom); }
+std::string hull_name(std::size_t hull) { return fmt::format("hull{}", hull); }
 std::string probe_name(ShapeForm form) { return fmt::format("probe-{}", word_of(form)); }
 
 Eigen::Vector3d engine_size_m(ShapeForm form, const Eigen::Vector3d& size_m) {

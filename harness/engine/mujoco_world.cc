@@ -36,7 +36,7 @@ void set_hooks() {
   std::call_once(once, [] {
     mju_user_error = &throw_fault;
     mju_user_warning = &count_warning;
-    replace_box_contacts();
+    replace_collisions();
   });
 }
 

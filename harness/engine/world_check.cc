@@ -252,18 +252,10 @@ void check_grippers(const WorldSpec& spec, ProblemList& problems) {
   if (spec.mobile) GripperChecker(spec, problems).run();
 }
 
-/// What MuJoCo has no words for, or is not told here.
+/// What MuJoCo has no words for.
 void check_for_mujoco(const WorldSpec& spec, ProblemList& problems) {
   if (const auto problem = mujoco_problem(spec)) {
     problems.add("joints/" + problem->joint, problem->message + "; MuJoCo needs one");
-  }
-  for (const BodySpec& body : spec.bodies) {
-    const bool has_hull =
-        std::any_of(body.shapes.begin(), body.shapes.end(),
-                    [](const BodyShape& shape) { return shape.form == ShapeForm::kHull; });
-    if (has_hull) {
-      problems.add("bodies/" + body.name, "hulls and meshes are simulated by ODE alone");
-    }
   }
 }
 

@@ -41,6 +41,17 @@ TEST_CASE("a grip and a slope hold what friction bears: MuJoCo in every directio
   }
 }
 
+TEST_CASE("a hull that is a box is gripped as that box is") {
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    for (const double angle : {0.0, 0.25 * std::numbers::pi}) {
+      CHECK(tools::least_grip(engine, kStep_s, angle, tools::LoadForm::kHull) ==
+            doctest::Approx(tools::least_grip(engine, kStep_s, angle)).epsilon(0.01));
+    }
+    CHECK(tools::creep_m_s(engine, kStep_s, tools::LoadForm::kHull) < 4e-5);
+  }
+}
+
 TEST_CASE("ODE bounds friction along two axes, and holds as much along both at the same time") {
   for (const double degrees : {0.0, 20.0, 45.0}) {
     CAPTURE(degrees);

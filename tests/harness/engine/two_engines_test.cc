@@ -327,22 +327,6 @@ TEST_CASE("a ring of joints is refused for MuJoCo by its joint, and taken by ODE
   CHECK(problems.front().message.find("ring") != std::string::npos);
 }
 
-TEST_CASE("what MuJoCo is not told of is refused for it at its place, and taken by ODE") {
-  if (!has_mujoco()) return;  // engines() says so in the cases above
-  WorldSpec wedge = world_of({box_body("wedge", {0.1, 0.1, 0.1}, {0.0, 0.0, 0.05}, 1.0)});
-  std::string why;
-  BodyShape& shape = wedge.bodies.front().shapes.front();
-  auto hull = hull_with({{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}},
-                        {{{0, 2, 1}}, {{0, 1, 3}}, {{0, 3, 2}}, {{1, 2, 3}}}, shape.p_BS, why);
-  REQUIRE_MESSAGE(hull.has_value(), why);
-  shape.form = ShapeForm::kHull;
-  shape.size_m = hull->size_m;
-  shape.hull = std::make_shared<const ConvexHull>(std::move(*hull));
-  const auto hulls = check_world(stepped_by(EngineKind::kMujoco, wedge));
-  REQUIRE(hulls.size() == 1);
-  CHECK(hulls.front().path == "bodies/wedge");
-}
-
 TEST_CASE("what stands on the floor is touched from below, what a pad presses by the pad") {
   for (const EngineKind engine : engines()) {
     CAPTURE(to_string(engine));

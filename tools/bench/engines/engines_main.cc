@@ -66,14 +66,17 @@ void print_grips() {
   constexpr double kStep_s = 0.002, kDegree_rad = std::numbers::pi / 180.0;
   fmt::print("\n| what holds, at steps of 2 ms | engine | 0 | 15 | 30 | 45 degrees |\n");
   fmt::print("|---|---|---|---|---|---|\n");
-  using Least = double (*)(EngineKind, double, double);
+  using Least = double (*)(EngineKind, double);
+  const Least grip = [](EngineKind engine, double rad) { return least_grip(engine, kStep_s, rad); };
+  const Least slope = [](EngineKind engine, double rad) {
+    return least_slope_friction(engine, kStep_s, rad);
+  };
   for (const auto& [name, least] :
-       {std::pair<const char*, Least>{"force of a grip", &least_grip},
-        std::pair<const char*, Least>{"friction on a slope", &least_slope_friction}}) {
+       {std::pair{"force of a grip", grip}, std::pair{"friction on a slope", slope}}) {
     for (const auto engine : engines()) {
       fmt::print("| least {}, by Coulomb's law 1 | {} |", name, to_string(engine));
       for (const double angle : {0.0, 15.0, 30.0, 45.0}) {
-        fmt::print(" {:.3f} |", least(engine, kStep_s, angle * kDegree_rad));
+        fmt::print(" {:.3f} |", least(engine, angle * kDegree_rad));
       }
       fmt::print("\n");
     }

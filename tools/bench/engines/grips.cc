@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "compiler/base/contract.h"
 
@@ -30,6 +33,34 @@ BodySpec box(std::string name, const Vector3d& size_m, const Vector3d& p_WB, dou
   body.p_WB = p_WB;
   body.mass_kg = mass_kg;
   return body;
+}
+
+/// The same box as corners and faces.
+void make_hull(harness::BodyShape& shape) {
+  std::vector<Vector3d> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Vector3d side((i & 1) != 0 ? 0.5 : -0.5, (i & 2) != 0 ? 0.5 : -0.5,
+                        (i & 4) != 0 ? 0.5 : -0.5);
+    corners.push_back(side.cwiseProduct(shape.size_m));
+  }
+  std::string why;
+  auto hull = harness::hull_with(corners,
+                                 {{{0, 4, 6}},
+                                  {{0, 6, 2}},
+                                  {{1, 3, 7}},
+                                  {{1, 7, 5}},
+                                  {{0, 1, 5}},
+                                  {{0, 5, 4}},
+                                  {{2, 6, 7}},
+                                  {{2, 7, 3}},
+                                  {{0, 2, 3}},
+                                  {{0, 3, 1}},
+                                  {{4, 5, 7}},
+                                  {{4, 7, 6}}},
+                                 shape.p_BS, why);
+  PARALLAX_REQUIRE(hull.has_value(), "a box that is convex");
+  shape.form = harness::ShapeForm::kHull;
+  shape.hull = std::make_shared<const harness::ConvexHull>(std::move(*hull));
 }
 
 JointSpec slider(std::string name, std::string parent, std::string child, const Vector3d& axis,
@@ -58,7 +89,8 @@ std::unique_ptr<harness::PhysicsWorld> started(WorldSpec spec, EngineKind engine
 /// A carriage with a pad, a second pad on it, and a load between them.
 class Gripper {
  public:
-  Gripper(EngineKind engine, double timestep_s, const Vector3d& axis, double force_n)
+  Gripper(EngineKind engine, double timestep_s, const Vector3d& axis, double force_n,
+          LoadForm form = LoadForm::kBox)
       : force_n_(force_n) {
     constexpr double kAnyForce_n = 1e5;
     const Vector3d pad(0.02, 0.01, 0.026);
@@ -68,6 +100,7 @@ class Gripper {
     spec.friction.fallback = kPadFriction;
     spec.bodies = {box("carriage", pad, middle - apart, 5.0), box("pad", pad, middle + apart, 0.12),
                    box("load", {kLoad_m, kLoad_m, 0.21}, middle, kMass_kg)};
+    if (form == LoadForm::kHull) make_hull(spec.bodies.back().shapes.front());
     spec.joints = {slider("rail", "", "carriage", axis, kAnyForce_n),
                    slider("finger", "carriage", "pad", -Vector3d::UnitY(), force_n)};
     world_ = started(std::move(spec), engine, timestep_s);
@@ -134,11 +167,11 @@ double slipped_m(double time_s, double force_n, const std::function<double(doubl
 
 }  // namespace
 
-double least_grip(EngineKind engine, double timestep_s, double angle_rad) {
+double least_grip(EngineKind engine, double timestep_s, double angle_rad, LoadForm form) {
   const double side_m_s2 = kEarth_m_s2 * std::tan(angle_rad);
   return least_that_holds([&](double share) {
     Gripper gripper(engine, timestep_s, Vector3d::UnitX(),
-                    force_n(share, kEarth_m_s2 / std::cos(angle_rad)));
+                    force_n(share, kEarth_m_s2 / std::cos(angle_rad)), form);
     const auto faster = [&](double time_s) { return 0.5 * side_m_s2 * time_s * time_s; };
     gripper.go_on(kSettling_s + kWatched_s, faster);
     return (gripper.offset() - Vector3d(0.0, gripper.offset().y(), 0.0)).norm() < kSlip_m;
@@ -167,8 +200,8 @@ double least_slope_friction(EngineKind engine, double timestep_s, double turn_ra
   });
 }
 
-double creep_m_s(EngineKind engine, double timestep_s) {
-  Gripper gripper(engine, timestep_s, Vector3d::UnitZ(), force_n(2.0, kEarth_m_s2));
+double creep_m_s(EngineKind engine, double timestep_s, LoadForm form) {
+  Gripper gripper(engine, timestep_s, Vector3d::UnitZ(), force_n(2.0, kEarth_m_s2), form);
   const auto still = [](double) { return 0.0; };
   gripper.go_on(1.0, still);
   const Vector3d before = gripper.offset();
