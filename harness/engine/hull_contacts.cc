@@ -9,7 +9,7 @@ namespace parallax::harness {
 namespace {
 
 constexpr double kAsLittle = 0.1;      // share by which a face may overlap more than what was found
-constexpr double kAlike = 0.9998;    // cosine between its normal and the one that was found
+constexpr double kAlike = 0.9998;      // cosine between its normal and the one that was found
 constexpr double kSamePlane_m = 1e-6;  // of corners of a face
 constexpr double kSamePlace_m = 1e-7;  // of contacts
 
