@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double kTouching_m = 0.001;  // overlaps up to here are play in the measures
 constexpr double kStep_m = 0.005;      // of sweeps
+constexpr double kStep_rad = 0.01;     // of those of doors
 constexpr double kProbe_m = 0.004;     // edge of the box that stands for a point
 constexpr double kInside_m = 0.005;    // points deeper in furniture than this are inside it
 
@@ -39,6 +41,11 @@ class GeometryChecker {
     for (const JointSpec& joint : layout_.sliders) {
       if (!is_part_of_robot(joint.child)) check_travel(joint);
       if (joint.handle && spec_.mobile) check_handle(joint);
+    }
+    for (const JointSpec& joint : layout_.hinges) {
+      if (!joint.handle) continue;
+      check_turn(joint);
+      if (spec_.mobile) check_handle(joint);
     }
     for (const PlaceSpec& place : spec_.places) {
       if (place.frame.empty()) check_place(place);
@@ -81,6 +88,27 @@ class GeometryChecker {
     add("joints/" + joint.name + "/range_m",
         fmt::format("`{}` meets `{}` {:.3f} m from its lower stop", hit->part, hit->obstacle,
                     hit->way_m));
+  }
+
+  /// The same of a door that has a handle.
+  void check_turn(const JointSpec& joint) {
+    const BodyId moved = *layout_.find_body(joint.child);
+    BodyMask leaf(layout_.bodies.size(), false);
+    leaf[moved.index()] = true;
+    BodyMask ignored = movable_;
+    for (std::size_t i = 0; i < ignored.size(); ++i) {
+      ignored[i] = ignored[i] || layout_.never_collide(moved, layout_.bodies.id_at(i));
+    }
+    const Sweep sweep(world_, leaf, ignored, kTouching_m);
+    const double sense = std::copysign(1.0, joint.axis_W.z());
+    for (const double stop : {*joint.low_rad, *joint.high_rad}) {
+      const auto hit = sweep.turning(Eigen::Vector3d::Zero(), joint.p_WA, sense * stop, kStep_rad);
+      if (!hit) continue;
+      add("joints/" + joint.name + "/range_rad",
+          fmt::format("`{}` meets `{}` before its {} stop", hit->part, hit->obstacle,
+                      stop == *joint.low_rad ? "lower" : "upper"));
+      return;
+    }
   }
 
   /// Pads that close at `p_BG` have to find something of the body there.
@@ -243,7 +271,8 @@ class GripperChecker {
 
 void check_geometry(const WorldSpec& spec, ProblemList& problems) {
   const bool drawers = std::any_of(spec.joints.begin(), spec.joints.end(), [](const JointSpec& j) {
-    return j.type == JointType::kSlider && j.low_m && j.high_m;
+    return (j.type == JointType::kSlider && j.low_m && j.high_m) ||
+           (j.type == JointType::kHinge && j.handle);
   });
   if (drawers || !spec.places.empty()) GeometryChecker(spec, problems).run();
 }

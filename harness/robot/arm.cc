@@ -55,6 +55,14 @@ void Arm::move_tool_to(const Eigen::Vector3d& target_W, const Motion& motion) {
   }
 }
 
+void Arm::lead_tool_round(const Eigen::Vector3d& centre_W, double angle_rad, const Motion& motion) {
+  if (auto* gantry = std::get_if<PalmGantry>(&carrier_)) {
+    gantry->lead_round(tool(), centre_W, angle_rad, motion);
+  } else {
+    std::get<PalmChain>(carrier_).lead_round(centre_W, angle_rad, motion);
+  }
+}
+
 void Arm::turn_wrist_to(double yaw_rad, const Motion& motion) {
   std::visit([&](auto& carrier) { carrier.turn_to(yaw_rad, motion); }, carrier_);
 }

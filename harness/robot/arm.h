@@ -22,6 +22,9 @@ class Arm {
   void reset();
   /// Straight to a point of the world, as the base stands now; a base that drives takes it along.
   void move_tool_to(const Eigen::Vector3d& target_W, const Motion& motion);
+  /// By `angle_rad` round the vertical through a point of the world, the wrist turning with it as
+  /// what it holds does; `motion` is in radians.
+  void lead_tool_round(const Eigen::Vector3d& centre_W, double angle_rad, const Motion& motion);
   /// Line of the pads against what the arm hangs on, the shorter way; 0: as it is by default.
   void turn_wrist_to(double yaw_rad, const Motion& motion);
   /// Of a chain: the next straight motion turns the wrist so on its way.

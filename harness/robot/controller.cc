@@ -23,13 +23,15 @@ struct NamedFactory {
   ControllerFactory make;
 };
 
-constexpr std::array<NamedFactory, 14> kFactories = {{
+constexpr std::array<NamedFactory, 16> kFactories = {{
+    {"close-door", &make_close_door},
     {"close-drawer", &make_close_drawer},
     {"detect", &make_detect},
     {"drive", &make_drive},
     {"going", &make_going},
     {"look", &make_look},
     {"move-torso", &make_move_torso},
+    {"open-door", &make_open_door},
     {"open-drawer", &make_open_drawer},
     {"open-gripper", &make_open_gripper},
     {"park", &make_park},

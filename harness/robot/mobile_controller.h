@@ -78,6 +78,8 @@ std::unique_ptr<Controller> make_open_gripper(const ControlContext&, const Argum
 std::unique_ptr<Controller> make_regrip(const ControlContext&, const Arguments&);
 std::unique_ptr<Controller> make_pick_up(const ControlContext&, const Arguments&);
 std::unique_ptr<Controller> make_place(const ControlContext&, const Arguments&);
+std::unique_ptr<Controller> make_open_door(const ControlContext&, const Arguments&);
+std::unique_ptr<Controller> make_close_door(const ControlContext&, const Arguments&);
 std::unique_ptr<Controller> make_open_drawer(const ControlContext&, const Arguments&);
 std::unique_ptr<Controller> make_close_drawer(const ControlContext&, const Arguments&);
 

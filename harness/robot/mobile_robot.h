@@ -17,7 +17,7 @@ inline constexpr double kTorsoTolerance_m = 0.005;    // of the height that it w
 inline constexpr double kTurnStep_rad = 0.035;        // between the headings that a drive tries
 inline constexpr double kWristTolerance_rad = 0.005;  // of the heading that a hand is turned to
 inline constexpr double kFingerTolerance_m = 0.001;   // of the opening that it was to have
-inline constexpr double kBeyondStop_m = 0.005;        // a hand moves a drawer on, so that it stops
+inline constexpr double kBeyondStop_m = 0.005;        // a hand leads on, so that it stops
 
 /// Position in the plane [m] and heading [rad].
 struct PlanarPose {

@@ -16,6 +16,7 @@ constexpr double kMostRate = 2.0;        // of a joint on the way [rad/s or m/s]
 constexpr double kOnWay = 0.02;          // a joint is so far from the way [rad or m]: from here on
 constexpr double kOffWay = 0.1;          // the arm slows down; here it waits for the correction
 constexpr double kNoWay = 1e-9;          // [m or rad]
+constexpr double kArcStep_rad = 0.02;    // between the samples of an arc
 
 /// The same direction, no part larger than `most`.
 JointVector bounded(const JointVector& rates, double most) {
@@ -99,6 +100,44 @@ void PalmChain::lead_to(const Eigen::Vector3d& target_W, const Motion& motion) {
   start(follow_way(arm_.chain, positions(), goal, {}, nullptr), goal, motion);
 }
 
+ChainWay PalmChain::arc_way(const JointVector& start, const Eigen::Vector3d& from_W,
+                            double wrist_rad, const Eigen::Vector3d& centre_W, double angle_rad,
+                            const ChainCheck& check) const {
+  // A chord for each small angle, with one sample at its end.
+  static constexpr WayOptions kWhole{1.0, 1.0, 0.25};
+  const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(angle_rad) / kArcStep_rad)));
+  ChainWay arc{{start}, 1.0, {}, 1.0 / steps};
+  for (int i = 1; i <= steps; ++i) {
+    const double turned = angle_rad * i / steps;
+    const Eigen::Vector3d at = round_vertical(from_W, centre_W, turned);
+    const ChainWay chord =
+        follow_way(arm_.chain, arc.last(), upright(at, wrist_rad + turned), kWhole, check);
+    if (!chord.whole()) {
+      arc.share = static_cast<double>(i - 1) / steps;
+      arc.fault = chord.fault;
+      break;
+    }
+    arc.samples.push_back(chord.last());
+  }
+  return arc;
+}
+
+void PalmChain::lead_round(const Eigen::Vector3d& centre_W, double angle_rad,
+                           const Motion& motion) {
+  const JointVector q = positions();
+  const Eigen::Vector3d tool_W = root() * arm_.chain.tool(q).translation();
+  way_ = arc_way(q, tool_W, wrist_goal_rad_, centre_W, angle_rad, nullptr);
+  mode_ = Mode::kArc;
+  wrist_goal_rad_ = wrapped(wrist_goal_rad_ + way_.share * angle_rad);
+  from_ = arm_.chain.tool(q);
+  centre_ = root().inverse() * centre_W;
+  arc_rad_ = angle_rad;
+  turned_rad_ = 0.0;
+  length_ = std::abs(angle_rad);
+  along_.reset(0.0);
+  if (length_ > kNoWay) along_.move_to(way_.share * length_, motion);
+}
+
 void PalmChain::swing_along(ChainWay way, const Motion& motion) {
   mode_ = Mode::kSwing;
   way_ = std::move(way);
@@ -118,11 +157,19 @@ void PalmChain::turn_to(double yaw_rad, const Motion& motion) {
 void PalmChain::aim_wrist(double yaw_rad) { wrist_goal_rad_ = wrapped(yaw_rad); }
 
 void PalmChain::brake() {
-  if (!along_.at_rest() && mode_ == Mode::kTurn) wrist_goal_rad_ = wrist_rad();
+  const bool turns = mode_ == Mode::kTurn || mode_ == Mode::kArc;
+  if (!along_.at_rest() && turns) wrist_goal_rad_ = wrist_rad();
   along_.brake();
 }
 
-double PalmChain::way_done() const {
+double PalmChain::way_done() {
+  if (mode_ == Mode::kArc) {
+    const Eigen::Vector3d start = from_.translation() - centre_;
+    const Eigen::Vector3d now = arm_.chain.tool(positions()).translation() - centre_;
+    const double angle = std::atan2(now.y(), now.x()) - std::atan2(start.y(), start.x());
+    turned_rad_ += wrapped(angle - turned_rad_);
+    return std::copysign(1.0, arc_rad_) * turned_rad_;
+  }
   if (mode_ == Mode::kSwing) {
     const JointVector way = way_.last() - way_.samples.front();
     if (length_ <= kNoWay) return 0.0;

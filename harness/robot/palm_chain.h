@@ -23,6 +23,14 @@ class PalmChain {
   /// Straight to a point of the world, as the robot stands now. Where the chain cannot follow the
   /// whole way, as far as it can.
   void lead_to(const Eigen::Vector3d& target_W, const Motion& motion);
+  /// By `angle_rad` round the vertical through a point of the world, the wrist turning with it, as
+  /// far as the chain can follow; `motion` is in radians.
+  void lead_round(const Eigen::Vector3d& centre_W, double angle_rad, const Motion& motion);
+  /// The positions of the joints on such a way of the upright tool, from those that have it at
+  /// `from_W` with the wrist turned to `wrist_rad`.
+  ChainWay arc_way(const JointVector& start, const Eigen::Vector3d& from_W, double wrist_rad,
+                   const Eigen::Vector3d& centre_W, double angle_rad,
+                   const ChainCheck& check) const;
   /// Through positions of all joints, whatever way the tool takes; `motion` is that of the joint
   /// which turns farthest. At the end the wrist is turned as before.
   void swing_along(ChainWay way, const Motion& motion);
@@ -47,10 +55,10 @@ class PalmChain {
   InverseResult reach(const Eigen::Vector3d& tool_W, double wrist_rad) const;
 
  private:
-  enum class Mode : std::uint8_t { kLine, kTurn, kSwing };
+  enum class Mode : std::uint8_t { kLine, kTurn, kSwing, kArc };
   /// In metres of the tool's line or in radians of its turn.
   void start(ChainWay way, const Eigen::Isometry3d& goal, const Motion& motion);
-  double way_done() const;
+  double way_done();
   JointVector led_rates(double share, double share_per_s, double off) const;
 
   PhysicsWorld& world_;
@@ -62,6 +70,8 @@ class PalmChain {
   Eigen::Isometry3d from_ = Eigen::Isometry3d::Identity();  // where the way begins
   Eigen::Vector3d ahead_ = Eigen::Vector3d::Zero();         // of the line, or axis of the turn
   double length_ = 0.0;
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  // of the arc, in the root's frame
+  double arc_rad_ = 0.0, turned_rad_ = 0.0;  // of the arc: the whole and what is done of it
   Mode mode_ = Mode::kLine;
   AxisServo along_;
   double wrist_goal_rad_ = 0.0;

@@ -1,7 +1,10 @@
 #include "harness/robot/servo.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include "harness/world/angles.h"
 
 namespace parallax::harness {
 namespace {
@@ -20,6 +23,13 @@ double approach_speed(double distance_m, const Motion& motion) {
   const double border_m = motion.acceleration_m_s2 / (rate * rate);
   if (distance_m <= border_m) return rate * distance_m;
   return std::sqrt(2.0 * motion.acceleration_m_s2 * (distance_m - 0.5 * border_m));
+}
+
+/// The velocity that takes back what a point lies beside its line [m/s].
+Eigen::Vector3d back_to_line(const Eigen::Vector3d& beside) {
+  const double distance = beside.norm();
+  if (distance <= 0.0) return Eigen::Vector3d::Zero();
+  return beside * (std::min(kSideRate_hz * distance, kMaxSideSpeed_m_s) / distance);
 }
 
 }  // namespace
@@ -114,11 +124,29 @@ Eigen::Vector3d LineServo::next_velocity(const Eigen::Vector3d& position, double
   const double s = direction_.dot(position - start_);
   const double speed = along_.next_velocity(s, 0.0, timestep_s);
   const Eigen::Vector3d beside = start_ + s * direction_ - position;
-  const double distance = beside.norm();
-  const double correction = std::min(kSideRate_hz * distance, kMaxSideSpeed_m_s);
-  Eigen::Vector3d velocity = speed * direction_;
-  if (distance > 0.0) velocity += beside * (correction / distance);
-  return velocity;
+  return speed * direction_ + back_to_line(beside);
+}
+
+void ArcServo::move_round(const Eigen::Vector3d& position, const Eigen::Vector3d& centre,
+                          double angle_rad, const Motion& motion) {
+  centre_ = centre;
+  start_ = position - centre;
+  turned_rad_ = rate_rad_s_ = 0.0;
+  along_.reset(0.0);
+  along_.move_to(angle_rad, motion);
+}
+
+Eigen::Vector3d ArcServo::next_velocity(const Eigen::Vector3d& position, double timestep_s) {
+  const Eigen::Vector3d from_centre = position - centre_;
+  const double now_rad = std::atan2(from_centre.y(), from_centre.x());
+  const double start_rad = std::atan2(start_.y(), start_.x());
+  turned_rad_ += wrapped(now_rad - start_rad - turned_rad_);
+  rate_rad_s_ = along_.next_velocity(turned_rad_, 0.0, timestep_s);
+  const double radius_m = start_.head<2>().norm();
+  const Eigen::Vector3d outwards(std::cos(now_rad), std::sin(now_rad), 0.0);
+  const Eigen::Vector3d on_circle = radius_m * outwards + start_.z() * Eigen::Vector3d::UnitZ();
+  return rate_rad_s_ * radius_m * Eigen::Vector3d::UnitZ().cross(outwards) +
+         back_to_line(on_circle - from_centre);
 }
 
 }  // namespace parallax::harness

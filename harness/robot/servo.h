@@ -68,4 +68,27 @@ class LineServo {
   AxisServo along_;
 };
 
+/// Velocity command of a point that is to move on a circle about the vertical through a centre,
+/// advanced once per timestep. The way along the circle is an AxisServo's, in radians; what lies
+/// beside it is taken back in proportion.
+class ArcServo {
+ public:
+  /// From where it is (as measured) by `angle_rad` round `centre`, at its height; `motion` is in
+  /// radians.
+  void move_round(const Eigen::Vector3d& position, const Eigen::Vector3d& centre, double angle_rad,
+                  const Motion& motion);
+  void brake() { along_.brake(); }
+  Eigen::Vector3d next_velocity(const Eigen::Vector3d& position, double timestep_s);
+  bool at_rest() const { return along_.at_rest(); }
+  /// How far it has turned since the motion began, and how fast it is to turn; by the last command.
+  double turned_rad() const { return turned_rad_; }
+  double rate_rad_s() const { return rate_rad_s_; }
+
+ private:
+  Eigen::Vector3d start_ = Eigen::Vector3d::UnitX();  // from the centre
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
+  double turned_rad_ = 0.0, rate_rad_s_ = 0.0;
+  AxisServo along_;
+};
+
 }  // namespace parallax::harness

@@ -12,6 +12,7 @@ namespace parallax::harness {
 namespace {
 
 constexpr double kStep_m = 0.010;    // of the sweeps
+constexpr double kStep_rad = 0.02;   // of those round a centre
 constexpr double kRetreat_m = 0.05;  // between the retreats that are tried
 constexpr int kRetreats = 11;        // up to 0.5 m
 constexpr double kHeight_m = 0.10;   // between the heights
@@ -164,6 +165,25 @@ std::optional<WayFault> ArmWays::along(const Eigen::Vector3d& from, const Eigen:
   if (auto fault = lead(*q, chain_->upright(to, wrist_rad_))) return fault;
   known_.emplace_back(to, *q);
   return std::nullopt;
+}
+
+std::optional<WayFault> ArmWays::round(const Eigen::Vector3d& from, const Eigen::Vector3d& centre_W,
+                                       double angle_rad) {
+  if (auto hit = palm_.turning(from - tool_W_, centre_W, angle_rad, kStep_rad)) {
+    return WayFault{std::move(hit), {}};
+  }
+  if (chain_ == nullptr) return std::nullopt;
+  const auto q = posture(from);
+  if (!q) return WayFault{{}, "the joints cannot bring the tool there"};
+  std::optional<Obstacle> hit;
+  const auto check = [&](const JointVector& at) -> std::optional<std::string> {
+    hit = links_->at(at);
+    return hit ? std::optional<std::string>("in the way") : std::nullopt;
+  };
+  const ChainWay way = chain_->arc_way(*q, from, wrist_rad_, centre_W, angle_rad, check);
+  if (way.whole()) return std::nullopt;
+  if (hit) return WayFault{std::move(hit), {}};
+  return WayFault{{}, fmt::format("the joints cannot follow: {}", way.fault)};
 }
 
 std::optional<WayFault> ArmWays::follow(const std::vector<Eigen::Vector3d>& corners) const {

@@ -168,6 +168,20 @@ constexpr std::array kCloseDrawer = {
     settle(0.3),
 };
 
+constexpr std::array kMoveDoor = {
+    named("arm", "arm", "which arm"),
+    named("joint", "door", "the hinge to turn"),
+    number("effort_n", "n", 60.0, "squeezing force"),
+    number("clearance_m", "m", 0.005, "of each pad before it closes"),
+    number("standoff_m", "m", 0.20, "of the straight stretches to and from the handle"),
+    number("max_speed_m_s", "m/s", 0.25, "of the tool"),
+    number("approach_speed_m_s", "m/s", 0.15, "on the last stretch"),
+    number("pull_speed_m_s", "m/s", 0.20, "of the hand on its arc"),
+    number("hold_s", "s", 0.1, "squeezing before the door is moved"),
+    number("stop_tolerance_rad", "rad", 0.05, "farther from its stop it has failed"),
+    settle(0.3),
+};
+
 constexpr std::array kPark = {
     named("arm", "arm", "which arm"),
     number("max_speed_m_s", "m/s", 0.25, "of the tool"),
@@ -194,6 +208,7 @@ constexpr std::array kRegrip = {
 constexpr RobotKind kMobile = RobotKind::kMobile;
 
 constexpr std::array kControllers = {
+    ControllerSpec{"close-door", kMoveDoor, "leads a door shut by its handle", kMobile},
     ControllerSpec{"close-drawer", kCloseDrawer, "pushes a drawer shut by its handle", kMobile},
     ControllerSpec{"detect", kDetect, "looks for bodies of a kind where the camera points",
                    kMobile},
@@ -201,6 +216,7 @@ constexpr std::array kControllers = {
     ControllerSpec{"going", kGoing, "drives the base along x"},
     ControllerSpec{"look", kLook, "points the camera at a place", kMobile},
     ControllerSpec{"move-torso", kMoveTorso, "lifts or lowers the torso", kMobile},
+    ControllerSpec{"open-door", kMoveDoor, "leads a door open by its handle", kMobile},
     ControllerSpec{"open-drawer", kOpenDrawer, "pulls a drawer open by its handle", kMobile},
     ControllerSpec{"open-gripper", kOpenGripper, "opens a gripper wide", kMobile},
     ControllerSpec{"park", kPark, "brings the tool to where it is carried", kMobile},
@@ -230,7 +246,7 @@ bool is_kind(const WorldLayout& layout, std::string_view name) {
 }  // namespace
 
 bool is_name(const ArgumentSpec& argument) {
-  static constexpr std::array<std::string_view, 6> kNames = {"arm",  "body",      "drawer",
+  static constexpr std::array<std::string_view, 7> kNames = {"arm",  "body",      "door", "drawer",
                                                              "kind", "graspable", "place"};
   return std::find(kNames.begin(), kNames.end(), argument.unit) != kNames.end();
 }
@@ -299,6 +315,10 @@ std::string wrong_name(const ArgumentSpec& argument, std::string_view name, cons
     const JointSpec& joint = layout.sliders[*slider];
     if (!joint.handle) return fault("has no `handle`");
     if (!joint.low_m || !joint.high_m) return fault("has no stops");
+  } else if (argument.unit == "door") {
+    const auto hinge = layout.find_hinge(name);
+    if (!hinge) return fault("does not name a hinge");
+    if (!layout.hinges[*hinge].handle) return fault("has no `handle`");
   } else if (argument.unit == "kind" && !is_kind(layout, name)) {
     return fault("is no kind of a free body");
   }
@@ -402,6 +422,7 @@ std::vector<std::string> names_for(const ArgumentSpec& argument, const WorldSpec
     names.push_back(argument.unit == "kind" ? body.kind_name() : body.name);
   }
   for (const JointSpec& joint : layout.sliders) names.push_back(joint.name);
+  for (const JointSpec& joint : layout.hinges) names.push_back(joint.name);
   for (const PlaceSpec& place : world.places) names.push_back(place.name);
   if (world.mobile) {
     for (const ArmSpec& arm : world.mobile->arms) names.push_back(arm.name);
@@ -470,6 +491,11 @@ std::optional<BodyId> Arguments::body(std::string_view name) const {
 std::optional<SliderId> Arguments::slider(std::string_view name) const {
   const auto found = text(name);
   return found ? layout_->find_slider(*found) : std::nullopt;
+}
+
+std::optional<HingeId> Arguments::hinge(std::string_view name) const {
+  const auto found = text(name);
+  return found ? layout_->find_hinge(*found) : std::nullopt;
 }
 
 const PlaceSpec* Arguments::place(std::string_view name) const {

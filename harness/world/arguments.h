@@ -19,8 +19,8 @@ namespace parallax::harness {
 struct ArgumentSpec {
   std::string_view name;  // "target.x"
   /// "m", "s", "n"; or what a name stands for: "body" (a free one), "graspable" (with a `grasp`),
-  /// "arm", "place", "drawer" (a slider with a handle and stops), "kind" (what detection looks
-  /// for).
+  /// "arm", "place", "drawer" (a slider with a handle and stops), "door" (a hinge with a
+  /// handle), "kind" (what detection looks for).
   std::string_view unit;
   bool required = false;
   double fallback = 0.0;  // unless required; NaN: see `help`
@@ -74,6 +74,7 @@ class Arguments {
   std::optional<std::string> text(std::string_view name) const;
   std::optional<BodyId> body(std::string_view name) const;
   std::optional<SliderId> slider(std::string_view name) const;
+  std::optional<HingeId> hinge(std::string_view name) const;
   const PlaceSpec* place(std::string_view name) const;
 
  private:

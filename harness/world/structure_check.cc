@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,6 +18,8 @@ namespace parallax::harness {
 namespace {
 
 constexpr double kMaxGravity_m_s2 = 100.0;  // four times that of the largest planet
+constexpr double kUpright = 1e-3;           // of a hinge with a handle: sine of how far it leans
+constexpr double kLeastLever_m = 0.05;      // from its axis to the handle
 const std::array<std::string, 6> kSettable = {"bottom", "mass", "x", "y", "yaw", "z"};
 
 class SolverChecker {
@@ -322,10 +325,30 @@ class StructureChecker {
                         "only free bodies are grasped");
     }
     for (const JointSpec& joint : spec_.joints) {
-      if (joint.handle && joint.type != JointType::kSlider) {
-        add("joints/" + joint.name + "/handle", "only sliders have handles");
-      }
+      if (joint.handle) check_handle(joint);
     }
+  }
+
+  void check_handle(const JointSpec& joint) {
+    const std::string path = "joints/" + joint.name + "/handle";
+    if (joint.type == JointType::kSlider) return;
+    if (joint.type != JointType::kHinge) {
+      return add(path, "only sliders and hinges have handles");
+    }
+    problems_.require(joint.low_rad && joint.high_rad, path,
+                      "is on a hinge that turns for ever: a door has stops (`range_rad`)");
+    const Eigen::Vector3d axis = joint.axis_W.normalized();
+    if (axis.head<2>().norm() > kUpright) {
+      return add(path, "is on a hinge that leans: hands turn about the vertical alone");
+    }
+    const auto child = std::find_if(spec_.bodies.begin(), spec_.bodies.end(),
+                                    [&](const BodySpec& b) { return b.name == joint.child; });
+    if (child == spec_.bodies.end()) return;  // told elsewhere
+    const Eigen::Vector3d grip =
+        child->p_WB +
+        Eigen::AngleAxisd(child->yaw_rad, Eigen::Vector3d::UnitZ()) * joint.handle->p_CH;
+    problems_.require((grip - joint.p_WA).head<2>().norm() > kLeastLever_m, path,
+                      "lies within 5 cm of the axis of its hinge");
   }
 
   const WorldSpec& spec_;

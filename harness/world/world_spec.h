@@ -81,7 +81,8 @@ enum class JointType : std::uint8_t { kSlider, kFixed, kGantry, kHinge };
 
 inline constexpr double kMostTurn_rad = 3.1;  // of a hinge from its default, where it has stops
 
-/// Where a gripper takes hold of the child of a slider to move it.
+/// Where a gripper takes hold of the child of a slider or a hinge to move it; at its default
+/// placement. What a hinge turns takes the directions along.
 struct HandleSpec {
   Eigen::Vector3d p_CH = Eigen::Vector3d::Zero();  // middle of the grip in the child's frame [m]
   Eigen::Vector3d approach = Eigen::Vector3d::UnitX();  // last stretch of the tool's way, world

@@ -1,0 +1,255 @@
+// Doors on hinges, opened and closed by a hand that takes them by their handle, in the physics
+// engine.
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/harness/doors/door_world.h"
+
+namespace parallax::harness::test {
+namespace {
+
+const WorldSpec& house() {
+  static const WorldSpec world = door_world();
+  return world;
+}
+
+Outcome move(Robot& robot, const char* controller, State more = {}) {
+  more.insert({{"arm", std::string("arm")}, {"joint", std::string("hinge")}});
+  return robot.act(controller, more);
+}
+Outcome open(Robot& robot, State more = {}) { return move(robot, "open-door", std::move(more)); }
+Outcome close(Robot& robot, State more = {}) { return move(robot, "close-door", std::move(more)); }
+Outcome park(Robot& robot) { return robot.act("park", {{"arm", std::string("arm")}}); }
+Outcome settle(Robot& robot, double time_s) {
+  return robot.act("open-gripper", {{"arm", std::string("arm")}, {"settle_s", time_s}});
+}
+bool ok(const Outcome& outcome) { return outcome.status == SimStatus::kOk; }
+
+double margin(const Outcome& outcome, const char* name) {
+  return std::get<double>(outcome.margins.at(name));
+}
+
+/// The middle of the bar, from where the leaf is; not by the code that leads the hand.
+Eigen::Vector3d bar(const Robot& robot) {
+  return robot.position("leaf") + robot.rotation("leaf") * Eigen::Vector3d(-0.07, 0.36, 0.0);
+}
+
+double yaw_of(const Robot& robot, const char* body) {
+  const Eigen::Matrix3d R = robot.rotation(body);
+  return std::atan2(R(1, 0), R(0, 0));
+}
+
+TEST_CASE("a door is opened to its stop, stays there, and is closed to the other") {
+  Robot robot(house(), beside());
+  const Outcome opened = open(robot);
+  CHECK(opened.reason == "");
+  CHECK(robot.number("hinge.q") == doctest::Approx(1.6).epsilon(0.01));
+  CHECK(margin(opened, "stop") == doctest::Approx(0.05).epsilon(0.2));
+  // Off the handle, the hand does not hold it there.
+  CHECK((robot.position("palm") - bar(robot)).norm() > 0.15);
+  REQUIRE(ok(park(robot)));
+  const double left = robot.number("hinge.q");
+  REQUIRE(ok(settle(robot, 5.0)));
+  CHECK(robot.number("hinge.q") == doctest::Approx(left).epsilon(1e-3));
+  CHECK(close(robot).reason == "");
+  CHECK(std::abs(robot.number("hinge.q")) < 0.01);
+  CHECK(ok(park(robot)));
+}
+
+TEST_CASE("the base stands still, the hand keeps the bar, and the wrist turns with the leaf") {
+  Robot robot(house(), beside());
+  const Eigen::Vector3d base = robot.position("chassis");
+  std::vector<double> reach_m, turn_rad, q;
+  double most_base_m = 0.0;
+  robot.watch([&](const OdeSimulator&) {
+    most_base_m = std::max(most_base_m, (robot.position("chassis") - base).norm());
+    const double angle = yaw_of(robot, "leaf");
+    if (angle < 0.1 || angle > 1.5) return;  // on the way
+    q.push_back(angle);
+    reach_m.push_back((robot.position("palm") - bar(robot)).norm());
+    turn_rad.push_back(std::remainder(yaw_of(robot, "palm") - angle, 2.0 * M_PI));
+  });
+  REQUIRE(ok(open(robot)));
+  REQUIRE(q.size() > 1000);
+  CHECK(std::is_sorted(q.begin(), q.end()));  // the door never swings ahead and back
+  const auto [near, far] = std::minmax_element(reach_m.begin(), reach_m.end());
+  CHECK(*far - *near < 0.01);
+  const auto [least, most] = std::minmax_element(turn_rad.begin(), turn_rad.end());
+  CHECK(*most - *least < 0.05);
+  CHECK(most_base_m < 0.005);
+}
+
+TEST_CASE("a door that is where it is to be is not touched") {
+  Robot robot(house(), beside());
+  const Eigen::Vector3d hand = robot.position("palm");
+  const Outcome closed = close(robot);
+  CHECK(ok(closed));
+  CHECK(closed.sim_time_s == 0.0);
+  CHECK((robot.position("palm") - hand).norm() == 0.0);
+}
+
+TEST_CASE(
+    "a handle out of reach is refused, and so is one that leaves it on the way; nothing moves") {
+  State start;
+  std::string reason;
+  SUBCASE("from the beginning") {
+    start = {{"robot.x", -1.6}, {"robot.y", 0.3}, {"robot.yaw", -0.656}};
+    reason = "manipulation-pose-unreachable: the handle of `hinge` is 1.";
+  }
+  SUBCASE("near the end") {
+    start = {{"robot.x", -0.7}, {"robot.y", 0.8}, {"robot.yaw", -0.9}};
+    reason = "manipulation-pose-unreachable: the handle of `hinge`, turned by ";
+  }
+  Robot robot(house(), start);
+  const Eigen::Vector3d hand = robot.position("palm");
+  const Outcome outcome = open(robot);
+  CAPTURE(outcome.reason);
+  CHECK(outcome.status == SimStatus::kFailed);
+  CHECK(outcome.reason.starts_with(reason));
+  CHECK(margin(outcome, "reach") < 0.0);
+  CHECK(robot.number("hinge.q") == doctest::Approx(0.0));
+  CHECK((robot.position("palm") - hand).norm() == 0.0);
+}
+
+TEST_CASE("a robot in the arc of the door does not open it") {
+  Robot robot(house(), {{"robot.x", -0.8}, {"robot.y", 0.05}, {"robot.yaw", 0.0}});
+  const Outcome outcome = open(robot);
+  CHECK(outcome.reason ==
+        "manipulation-pose-unreachable: on the arc of `hinge` `leaf` would meet `chassis`");
+  CHECK(robot.number("hinge.q") == doctest::Approx(0.0));
+}
+
+TEST_CASE("what slides in the arc of the door is told before anything moves") {
+  WorldSpec spec = house();
+  BodySpec chest = body_of(spec, "stand");
+  chest.name = "chest";
+  chest.p_WB = {-0.5, -0.3, 0.35};
+  chest.mass_kg = 40.0;
+  JointSpec rail;
+  rail.name = "rail";
+  rail.child = "chest";
+  rail.low_m = -0.2;
+  rail.high_m = 0.2;
+  spec.bodies.push_back(chest);
+  spec.joints.push_back(rail);
+  Robot robot(spec, beside());
+  CHECK(open(robot).reason ==
+        "manipulation-pose-unreachable: on the arc of `hinge` `leaf` would meet `chest`");
+  CHECK(robot.number("hinge.q") == doctest::Approx(0.0));
+}
+
+TEST_CASE("a door that meets something heavy is short of its stop, a light thing it pushes along") {
+  const State in_the_arc = {{"load.x", -0.5}, {"load.y", -0.35}};
+  SUBCASE("heavy") {
+    Robot robot(house(), beside(in_the_arc));
+    const Outcome outcome = open(robot);
+    CAPTURE(outcome.reason);
+    CHECK(outcome.status == SimStatus::kFailed);
+    const double q = robot.number("hinge.q");
+    CHECK(q > 0.5);
+    CHECK(q < 1.4);
+    CHECK(outcome.reason.starts_with("manipulation-goal-not-reached: `hinge` is "));
+    CHECK(outcome.reason.find(" rad short of its stop") != std::string::npos);
+    CHECK(margin(outcome, "stop") == doctest::Approx(0.05 - (1.6 - q)).epsilon(0.02));
+    CHECK(std::abs(robot.number("load.x") + 0.5) < 0.03);
+  }
+  SUBCASE("light") {
+    State start = beside(in_the_arc);
+    start["load.mass"] = 2.0;
+    Robot robot(house(), start);
+    CHECK(open(robot).reason == "");
+    CHECK(robot.number("load.y") < -0.6);
+  }
+}
+
+TEST_CASE("a door that sticks more than the hand can pull stays shut, one that sticks less opens") {
+  for (const double torque_nm : {20.0, 400.0}) {
+    CAPTURE(torque_nm);
+    WorldSpec spec = house();
+    joint_of(spec, "hinge").max_torque_nm = torque_nm;
+    Robot robot(spec, beside());
+    const Outcome outcome = open(robot);
+    CAPTURE(outcome.reason);
+    CHECK(ok(outcome) == (torque_nm < 100.0));
+    if (torque_nm > 100.0) CHECK(robot.number("hinge.q") < 0.1);
+  }
+}
+
+TEST_CASE("a hand that holds something takes no handle") {
+  Robot robot(house(), {{"robot.x", -1.0}, {"robot.y", -0.5}, {"robot.yaw", M_PI}});
+  robot.find("stand", "block");
+  const Outcome picked =
+      robot.act("pick-up", {{"arm", std::string("arm")}, {"object", std::string("block")}});
+  CAPTURE(picked.reason);
+  REQUIRE(ok(picked));
+  CHECK(open(robot).reason == "object-not-held: the gripper is not empty");
+  CHECK(robot.flag("block.held_by.arm"));
+}
+
+TEST_CASE("the same start gives the same bits, in any simulator") {
+  std::vector<std::string> digests;
+  for (int i = 0; i < 2; ++i) {
+    Robot robot(house(), beside());
+    REQUIRE(ok(open(robot)));
+    REQUIRE(ok(close(robot)));
+    digests.push_back(std::get<std::string>(robot.observed("digest")));
+  }
+  CHECK(digests[0] == digests[1]);
+}
+
+/// The house seen in a mirror along y: the door turns the other way.
+WorldSpec mirrored(WorldSpec spec) {
+  body_of(spec, "leaf").p_WB.y() *= -1.0;
+  for (BodyShape& shape : body_of(spec, "leaf").shapes) shape.p_BS.y() *= -1.0;
+  JointSpec& hinge = joint_of(spec, "hinge");
+  hinge.p_WA.y() *= -1.0;
+  hinge.axis_W *= -1.0;
+  hinge.handle->p_CH.y() *= -1.0;
+  hinge.handle->approach.y() *= -1.0;
+  for (const char* wall : {"wall_left", "wall_right"}) body_of(spec, wall).p_WB.y() *= -1.0;
+  return spec;
+}
+
+TEST_CASE("a door that turns the other way round is opened and closed alike") {
+  // The shoulder is on the robot's left, so its place is no mirrored one.
+  Robot robot(mirrored(house()), {{"robot.x", -0.92}, {"robot.y", -0.367}, {"robot.yaw", 0.656}});
+  const Outcome opened = open(robot);
+  CHECK(opened.reason == "");
+  CHECK(robot.number("hinge.q") == doctest::Approx(1.6).epsilon(0.01));
+  CHECK(yaw_of(robot, "leaf") == doctest::Approx(-1.6).epsilon(0.01));
+  CHECK(close(robot).reason == "");
+  CHECK(std::abs(yaw_of(robot, "leaf")) < 0.01);
+}
+
+TEST_CASE("an arm of joints opens and closes a narrow door, from where it reaches all of the arc") {
+  std::string text = replaced(kDoorWorld, "mobile_palm", "mobile_six_joint");
+  text = replaced(text, "position_m: [-0.03, -0.005, 1.05]", "position_m: [-0.03, -0.175, 1.05]");
+  text = replaced(text, "[0.04, 0.84, 2.0]", "[0.04, 0.5, 2.0]");
+  for (int i = 0; i < 2; ++i) text = replaced(text, "[-0.07, 0.36, 0]", "[-0.07, 0.19, 0]");
+  const WorldSpec spec = mirrored(door_world(text));
+  SUBCASE("near enough") {
+    Robot robot(spec, {{"robot.x", -0.74}, {"robot.y", 0.04}, {"robot.yaw", 0.656}});
+    CHECK(open(robot).reason == "");
+    CHECK(robot.number("hinge.q") > 1.55);
+    CHECK(close(robot).reason == "");
+    CHECK(robot.number("hinge.q") < 0.05);
+  }
+  SUBCASE("too far") {
+    Robot robot(spec, {{"robot.x", -0.94}, {"robot.y", -0.06}, {"robot.yaw", 0.656}});
+    const Outcome outcome = open(robot);
+    CHECK(outcome.reason.starts_with(
+        "manipulation-pose-unreachable: the handle of `hinge` is beyond the joints of the arm"));
+    CHECK(margin(outcome, "reach") < 0.0);
+    CHECK(robot.number("hinge.q") == doctest::Approx(0.0));
+  }
+}
+
+}  // namespace
+}  // namespace parallax::harness::test
