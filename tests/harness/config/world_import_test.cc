@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <sstream>
 
 #include "harness/engine/ode_world.h"
 #include "harness/import/import.h"
@@ -20,11 +21,28 @@ struct Loaded {
   }
 };
 
+/// Puts `text` into a file, before the first `mark`.
+void insert_before(const std::filesystem::path& path, const std::string& mark,
+                   const std::string& text) {
+  std::ostringstream all;
+  all << std::ifstream(path).rdbuf();
+  std::string content = all.str();
+  const auto at = content.find(mark);
+  REQUIRE(at != std::string::npos);
+  std::ofstream(path) << content.insert(at, text);
+}
+
 TEST_CASE("an office in SDF: includes, frames, a door on its hinge, and what is left out is said") {
   if (!reads_sdf()) return;
   Workspace workspace;
   file_in_scenarios(workspace, "worlds/office.sdf");
   file_in_scenarios(workspace, "worlds/models");
+  const auto office = workspace.folder() / "office.sdf";
+  insert_before(office, "<model name=\"ground\">", "<light type=\"directional\" name=\"sun\"/>");
+  const std::string visual =
+      "<visual name=\"paint\"><geometry><box><size>1 1 1</size></box></geometry></visual>";
+  insert_before(office, "<collision name=\"board\">", visual);
+  insert_before(workspace.folder() / "models/mug/model.sdf", "<collision", visual);
   const auto scenario = workspace.load(scenario_with(
       "  sdf: office.sdf\n  models: models\n"
       "  bodies: {mug1: {settable: [x, y]}, cup: {size_m: [0.1, 0.1, 0.1], mass_kg: 0.2, "
@@ -33,7 +51,7 @@ TEST_CASE("an office in SDF: includes, frames, a door on its hinge, and what is 
   const WorldSpec& world = scenario->world;
   CHECK(workspace.reports() ==
         std::vector<std::string>{
-            "W5144 at 5:5: not taken over, 1 of them: lights; the first is `sun`",
+            "W5144 at 6:5: not taken over, 1 of them: lights; the first is `sun`",
             "W5144 at 35:7: not taken over, 2 of them: visuals; the first is `door::leaf`"});
   const BodySpec& mug = body(world, "mug1");
   CHECK((mug.p_WB - Eigen::Vector3d(1.8, 0.8, 0.77)).norm() < 1e-9);
@@ -43,14 +61,15 @@ TEST_CASE("an office in SDF: includes, frames, a door on its hinge, and what is 
   CHECK(mug.settable == std::vector<std::string>{"x", "y"});
   const JointSpec& hinge = joint(world, "door_hinge");
   CHECK(hinge.type == JointType::kHinge);
-  CHECK((hinge.p_WA - Eigen::Vector3d(0.0, -0.445, 1.05)).norm() < 1e-9);
+  CHECK((hinge.p_WA - Eigen::Vector3d(-0.03, -0.445, 1.05)).norm() < 1e-9);
   CHECK((hinge.axis_W - Eigen::Vector3d::UnitZ()).norm() < 1e-9);
   CHECK(hinge.low_rad == 0.0);
   CHECK(hinge.high_rad == 1.6);
   CHECK(hinge.damping_nm_s == 2.0);
   CHECK(hinge.max_torque_nm == 0.5);
   const BodySpec& leaf = body(world, "door_leaf");
-  CHECK((leaf.p_WB - Eigen::Vector3d(0.0, -0.005, 1.05)).norm() < 1e-9);
+  CHECK((leaf.p_WB - Eigen::Vector3d(-0.03, -0.005, 1.05)).norm() < 1e-9);
+  CHECK(leaf.shapes.size() == 3);
   CHECK(leaf.shapes[1].roll_rad == doctest::Approx(0.5 * std::numbers::pi));
   CHECK(world.solver.gravity_m_s2 == doctest::Approx(-9.8));
   CHECK(world.friction.pairs.at({"mu0.6", "mu0.8"}) == 0.6);
