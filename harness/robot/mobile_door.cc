@@ -13,11 +13,12 @@ constexpr double kHandAcceleration_m_s2 = 0.3;
 constexpr double kAtStop_rad = 0.002;
 constexpr double kTouchingDoor_m = 0.002;  // overlaps up to here are play in the measures
 constexpr double kDoorStep_rad = 0.035;    // between the places of the arc that are tried
+constexpr double kBehind_m = 0.5;          // what a palm pushes is looked for from so far
 constexpr int kChainPlaces = 3;            // of an arm of joints, whose ways are tried later
 
-/// Takes a door by its handle and leads it to one of its stops. The base stands still; the hand
-/// follows the arc of the handle, and the wrist turns with the leaf. Angles are those about the
-/// vertical, upwards.
+/// Leads a door to one of its stops: by its handle or, if the hand holds something, with the palm
+/// that pushes where the handle is. The base stands still; the hand follows the arc, and the wrist
+/// turns with the leaf. Angles are those about the vertical, upwards.
 class MoveDoor final : public MobileController {
  public:
   MoveDoor(const ControlContext& context, const Arguments& arguments, bool opens)
@@ -26,11 +27,11 @@ class MoveDoor final : public MobileController {
     leaf_ = *world().layout().find_body(joint().child);
     // As of a drawer, the upper stop is the open end.
     goal_rad_ = opens ? *joint().high_rad : *joint().low_rad;
-    if (context.grasp.held_body(arm().gripper())) {
-      refuse_with(kGraspFailed, "the gripper is not empty");
-    } else if (!is_there()) {
-      plan();
-    }
+    if (is_there()) return;
+    const bool pulls = !context.grasp.held_body(arm().gripper());
+    const double wrist = pulls ? aim_at_handle() : aim_behind();
+    standoff_ = grip_ - number("standoff_m") * way_in();
+    if (require_arc(wrist) && require_free_door()) add_phases(wrist, pulls);
   }
 
  private:
@@ -46,26 +47,52 @@ class MoveDoor final : public MobileController {
     const Eigen::AngleAxisd back(-leaf.yaw_rad, Eigen::Vector3d::UnitZ());
     return world().position(leaf_) + world().rotation(leaf_) * (back * (joint().p_WA - leaf.p_WB));
   }
-  /// The last stretch to the handle as the door stands.
+  Eigen::Vector3d handle_in_world() const {
+    return world().position(leaf_) + world().rotation(leaf_) * handle_.p_CH;
+  }
+  /// The last stretch to the handle, or to beside it, as the door stands.
   Eigen::Vector3d way_in() const {
     return Eigen::AngleAxisd(turned_rad(), Eigen::Vector3d::UnitZ()) *
            handle_.approach.normalized();
   }
   /// What is left of the arc, and a little more, so that the stop ends it.
   double arc_rad() const {
-    const double beyond_rad = kBeyondStop_m / (grip_ - axis()).head<2>().norm();
+    const double beyond_rad = beyond_m_ / (grip_ - axis()).head<2>().norm();
     return left_rad() + std::copysign(beyond_rad, left_rad());
   }
 
-  void plan() {
+  /// The hand at the handle as the door stands; how its wrist is turned then.
+  double aim_at_handle() {
     const double wrist = wrapped(handle_.wrist_rad + turned_rad() - robot().base().pose().yaw_rad);
-    grip_ = world().position(leaf_) + world().rotation(leaf_) * handle_.p_CH -
+    grip_ = handle_in_world() -
             arm().pad_line(wrist) *
                 (0.5 * arm().spec().opening_m - 0.5 * handle_.width_m - number("clearance_m"));
-    standoff_ = grip_ - number("standoff_m") * way_in();
-    if (!require_arc(wrist) || !require_free_door()) return;
+    return wrist;
+  }
+
+  /// The palm behind what it will meet first of the door, where the handle is and on the way that
+  /// the door is to go. A line of the pads along that way is as good either way round.
+  double aim_behind() {
+    const Eigen::Vector3d handle = handle_in_world();
+    const Eigen::Vector3d out = (handle - axis()).cwiseProduct(Eigen::Vector3d(1.0, 1.0, 0.0));
+    const Eigen::Vector3d ahead =
+        std::copysign(1.0, left_rad()) * Eigen::Vector3d::UnitZ().cross(out).normalized();
+    const Eigen::Vector3d behind = handle - kBehind_m * ahead;
+    const double way_m = world().ray_meets(behind, handle, leaf_).value_or(kBehind_m);
+    const Eigen::Vector3d line = arm().pad_line(arm().wrist_rad());
+    double turn = wrapped(std::atan2(ahead.y(), ahead.x()) - std::atan2(line.y(), line.x()));
+    if (turn > 0.5 * M_PI) turn -= M_PI;
+    if (turn <= -0.5 * M_PI) turn += M_PI;
+    const double wrist = wrapped(arm().wrist_rad() + turn);
+    const double room_m = arm().palm_half_extent_m(ahead, wrist) + number("clearance_m");
+    grip_ = behind + (way_m - room_m) * ahead - arm().palm_offset();
+    beyond_m_ += number("clearance_m");
+    return wrist;
+  }
+
+  void add_phases(double wrist, bool pulls) {
     add_wrist(wrist);
-    add_opening([this] { return arm().spec().opening_m; });
+    if (pulls) add_opening([this] { return arm().spec().opening_m; });
     add_step([this] { check_hand(); });
     add_tool_path("reaching", [this] { return standoff_; });
     Motion slow = tool_motion();
@@ -73,11 +100,13 @@ class MoveDoor final : public MobileController {
     add_tool_move(
         "approaching", [this] { return grip_; }, slow);
     // The pads close on a bar that gives way little: a time, not a touch, ends it.
-    add_squeeze(number("effort_n"), number("hold_s"), [this] {
-      return arm().opening_m() <= handle_.width_m + 2.0 * number("clearance_m") + 0.002;
-    });
+    if (pulls) {
+      add_squeeze(number("effort_n"), number("hold_s"), [this] {
+        return arm().opening_m() <= handle_.width_m + 2.0 * number("clearance_m") + 0.002;
+      });
+    }
     add_turning();
-    add_opening([this] { return arm().spec().opening_m; });
+    if (pulls) add_opening([this] { return arm().spec().opening_m; });
     add_tool_move(
         "drawing back",
         [this] { return Eigen::Vector3d(arm().tool() - number("standoff_m") * way_in()); },
@@ -161,6 +190,7 @@ class MoveDoor final : public MobileController {
   HandleSpec handle_;
   BodyId leaf_;
   double goal_rad_ = 0.0;
+  double beyond_m_ = kBeyondStop_m;  // of the hand's way
   Eigen::Vector3d grip_ = Eigen::Vector3d::Zero(), standoff_ = Eigen::Vector3d::Zero();
 };
 

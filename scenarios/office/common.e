@@ -129,7 +129,7 @@ event CloseDoor(door)
   HoldsAt(Holding(item),time) & HoldsAt(RobotAt(base),time) & Serves(base,spot) ->
     Terminates(Put(item,spot),Parked(),time).
 
-; The door, with an empty hand.
+; The door. It is opened by an empty hand, and shut by any: one that holds something pushes it.
 [door,base,time]
   HoldsAt(RobotAt(base),time) & Beside(base,door) & !({item} HoldsAt(Holding(item),time)) ->
     Initiates(OpenDoor(door),DoorOpen(door),time).
@@ -140,11 +140,8 @@ event CloseDoor(door)
   !HoldsAt(DoorOpen(door),time) ->
     Terminates(OpenDoor(door),Parked(),time).
 [door,base,time]
-  HoldsAt(RobotAt(base),time) & Beside(base,door) & !({item} HoldsAt(Holding(item),time)) ->
+  HoldsAt(RobotAt(base),time) & Beside(base,door) ->
     Terminates(CloseDoor(door),DoorOpen(door),time).
 [door,base,time]
-  HoldsAt(RobotAt(base),time) &
-  Beside(base,door) &
-  !({item} HoldsAt(Holding(item),time)) &
-  HoldsAt(DoorOpen(door),time) ->
+  HoldsAt(RobotAt(base),time) & Beside(base,door) & HoldsAt(DoorOpen(door),time) ->
     Terminates(CloseDoor(door),Parked(),time).

@@ -47,7 +47,7 @@ TEST_CASE("only sliders and hinges have handles") {
       "    plate: {type: fixed, parent: stand, child: cover, " + kHandle + "}\n  places:";
   const std::string world =
       replaced(replaced(kDoorWorld, "  places:", fixed), "    stand: {size",
-               "    cover: {size_m: [0.1, 0.1, 0.01], mass_kg: 1, position_m: [-1.6, -0.5, 0.8]}\n"
+               "    cover: {size_m: [0.1, 0.1, 0.01], mass_kg: 1, position_m: [-1.3, -0.4, 0.8]}\n"
                "    stand: {size");
   CHECK(only_report(world).find("only sliders and hinges have handles") != std::string::npos);
 }

@@ -24,11 +24,11 @@ inline const std::string kDoorWorld = R"(  include: robots/mobile_palm.yaml
         - {size_m: [0.04, 0.84, 2.0]}
         - {capsule: {radius_m: 0.01, length_m: 0.12}, at_m: [-0.07, 0.36, 0], roll_rad: 1.570796}
     load: {size_m: [0.4, 0.4, 0.4], mass_kg: 300, position_m: [3, 3, 0.2], settable: [x, y, mass]}
-    stand: {size_m: [0.2, 0.2, 0.7], position_m: [-1.6, -0.5, 0.35]}
+    stand: {size_m: [0.2, 0.2, 0.7], position_m: [-1.3, -0.4, 0.35]}
     block:
       size_m: [0.05, 0.05, 0.1]
       mass_kg: 0.3
-      position_m: [-1.6, -0.5, 0.75]
+      position_m: [-1.3, -0.4, 0.75]
       grasp: {at_m: [0, 0, 0.02], approach: above, width_m: 0.05, effort_n: 25}
   joints:
     hinge:
@@ -41,7 +41,7 @@ inline const std::string kDoorWorld = R"(  include: robots/mobile_palm.yaml
       damping_nm_s: 2
       handle: {at_m: [-0.07, 0.36, 0], approach: [0, -1, 0], wrist_rad: 1.570796, width_m: 0.02}
   places:
-    stand: {at_m: [-1.6, -0.5, 0.75]}
+    stand: {at_m: [-1.3, -0.4, 0.75]}
 )";
 
 /// A scenario with this under `world`, and with these actions.
