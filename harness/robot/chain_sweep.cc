@@ -1,7 +1,10 @@
 #include "harness/robot/chain_sweep.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+
+#include "harness/world/angles.h"
 
 namespace parallax::harness {
 namespace {
@@ -64,6 +67,25 @@ std::optional<Obstacle> ChainSweep::at(const JointVector& q) const {
     probe.size_m = part.own_size;
     if (const auto hit = world_.find_obstacle(probe, all_but_robot_, tolerance_m_)) {
       if (hit->first != "floor") return Obstacle{part.name, hit->first, 0.0};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Obstacle> ChainSweep::meets_turned(const JointVector& q, BodyId turned,
+                                                 const Eigen::Vector3d& centre_W,
+                                                 double angle_rad) const {
+  Motions moved;
+  arm_.chain.motions(q, moved);
+  // Seen from the body, which stays where it is, everything else turns back.
+  const Eigen::AngleAxisd back(-angle_rad, Eigen::Vector3d::UnitZ());
+  for (const Part& part : parts_) {
+    if (part.joint + 1 == arm_.masses.size()) continue;
+    const Eigen::Isometry3d X_WS = X_WR_ * moved[part.joint] * part.X_JS;
+    const Probe probe{part.own_size, round_vertical(X_WS.translation(), centre_W, -angle_rad),
+                      back * X_WS.linear(), part.probe.form, part.probe.hull};
+    if (world_.overlaps(probe, turned)) {
+      return Obstacle{part.name, world_.layout().bodies[turned].name, 0.0};
     }
   }
   return std::nullopt;

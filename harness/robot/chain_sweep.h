@@ -21,6 +21,10 @@ class ChainSweep {
 
   /// What meets what with the joints at `q`; the way is no part of it.
   std::optional<Obstacle> at(const JointVector& q) const;
+  /// Which part meets a body that has turned by `angle_rad` about the vertical through `centre_W`
+  /// from where it is; not what the last joint carries, which leads it.
+  std::optional<Obstacle> meets_turned(const JointVector& q, BodyId turned,
+                                       const Eigen::Vector3d& centre_W, double angle_rad) const;
 
  private:
   struct Part {

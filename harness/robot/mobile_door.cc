@@ -155,7 +155,7 @@ class MoveDoor final : public MobileController {
   void check_hand() {
     ArmWays ways = arm_ways(leaf_, 0.0);
     auto fault = ways.along(standoff_, grip_);
-    if (!fault) fault = ways.round(grip_, axis(), arc_rad());
+    if (!fault) fault = ways.round(grip_, axis(), arc_rad(), leaf_);
     if (!fault) return;
     State margins;
     if (fault->hit && fault->hit->clearance_m) margins["clearance"] = *fault->hit->clearance_m;

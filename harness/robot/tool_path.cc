@@ -70,6 +70,10 @@ BodyMask joined(BodyMask a, const BodyMask& b) {
   return a;
 }
 
+double heading_from(const Eigen::Vector3d& centre, const Eigen::Vector3d& p) {
+  return std::atan2(p.y() - centre.y(), p.x() - centre.x());
+}
+
 }  // namespace
 
 std::string WayFault::text(const char* meets) const {
@@ -168,7 +172,7 @@ std::optional<WayFault> ArmWays::along(const Eigen::Vector3d& from, const Eigen:
 }
 
 std::optional<WayFault> ArmWays::round(const Eigen::Vector3d& from, const Eigen::Vector3d& centre_W,
-                                       double angle_rad) {
+                                       double angle_rad, BodyId led) {
   if (auto hit = palm_.turning(from - tool_W_, centre_W, angle_rad, kStep_rad)) {
     return WayFault{std::move(hit), {}};
   }
@@ -176,8 +180,14 @@ std::optional<WayFault> ArmWays::round(const Eigen::Vector3d& from, const Eigen:
   const auto q = posture(from);
   if (!q) return WayFault{{}, "the joints cannot bring the tool there"};
   std::optional<Obstacle> hit;
+  const double start_rad = heading_from(centre_W, from);
   const auto check = [&](const JointVector& at) -> std::optional<std::string> {
+    const Eigen::Vector3d tool_W = chain_->root() * chain_->arm().chain.tool(at).translation();
     hit = links_->at(at);
+    if (!hit) {
+      const double turned = wrapped(heading_from(centre_W, tool_W) - start_rad);
+      hit = links_->meets_turned(at, led, centre_W, turned);
+    }
     return hit ? std::optional<std::string>("in the way") : std::nullopt;
   };
   const ChainWay way = chain_->arc_way(*q, from, wrist_rad_, centre_W, angle_rad, check);

@@ -53,9 +53,10 @@ class ArmWays {
           const BodyMask& robot, double tolerance_m);
 
   std::optional<WayFault> along(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
-  /// The same by `angle_rad` round the vertical through `centre_W`, the wrist turning with it.
+  /// The same by `angle_rad` round the vertical through `centre_W`, the wrist turning with it, and
+  /// so does `led`, which the hand leads and no link of a chain may meet.
   std::optional<WayFault> round(const Eigen::Vector3d& from, const Eigen::Vector3d& centre_W,
-                                double angle_rad);
+                                double angle_rad, BodyId led);
   /// Can the joints follow all the corners in a row, from where they are?
   std::optional<WayFault> follow(const std::vector<Eigen::Vector3d>& corners) const;
   /// Of a chain: ways of all joints at once to a posture that has the tool there, one after the
