@@ -47,13 +47,16 @@ class MoveDoor final : public MobileController {
     const Eigen::AngleAxisd back(-leaf.yaw_rad, Eigen::Vector3d::UnitZ());
     return world().position(leaf_) + world().rotation(leaf_) * (back * (joint().p_WA - leaf.p_WB));
   }
+  /// How far the leaf is turned from its default placement, what it hangs on included.
+  double swung_rad() const {
+    return heading_rad(world().rotation(leaf_)) - world().layout().bodies[leaf_].yaw_rad;
+  }
   Eigen::Vector3d handle_in_world() const {
     return world().position(leaf_) + world().rotation(leaf_) * handle_.p_CH;
   }
   /// The last stretch to the handle, or to beside it, as the door stands.
   Eigen::Vector3d way_in() const {
-    return Eigen::AngleAxisd(turned_rad(), Eigen::Vector3d::UnitZ()) *
-           handle_.approach.normalized();
+    return Eigen::AngleAxisd(swung_rad(), Eigen::Vector3d::UnitZ()) * handle_.approach.normalized();
   }
   /// What is left of the arc, and a little more, so that the stop ends it.
   double arc_rad() const {
@@ -63,7 +66,7 @@ class MoveDoor final : public MobileController {
 
   /// The hand at the handle as the door stands; how its wrist is turned then.
   double aim_at_handle() {
-    const double wrist = wrapped(handle_.wrist_rad + turned_rad() - robot().base().pose().yaw_rad);
+    const double wrist = wrapped(handle_.wrist_rad + swung_rad() - robot().base().pose().yaw_rad);
     grip_ = handle_in_world() -
             arm().pad_line(wrist) *
                 (0.5 * arm().spec().opening_m - 0.5 * handle_.width_m - number("clearance_m"));

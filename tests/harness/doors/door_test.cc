@@ -266,6 +266,37 @@ TEST_CASE("a door that turns the other way round is opened and closed alike") {
   CHECK(std::abs(yaw_of(robot, "leaf")) < 0.01);
 }
 
+/// The house turned about the vertical through the origin.
+WorldSpec turned(WorldSpec spec, double angle_rad) {
+  const Eigen::AngleAxisd turn(angle_rad, Eigen::Vector3d::UnitZ());
+  for (const char* name : {"wall_left", "wall_right", "stand", "block", "leaf"}) {
+    BodySpec& body = body_of(spec, name);
+    body.p_WB = turn * body.p_WB;
+    body.yaw_rad += angle_rad;
+  }
+  JointSpec& hinge = joint_of(spec, "hinge");
+  hinge.p_WA = turn * hinge.p_WA;
+  hinge.handle->approach = turn * hinge.handle->approach;
+  hinge.handle->wrist_rad += angle_rad;
+  return spec;
+}
+
+TEST_CASE("a house that stands otherwise in the world has the same door") {
+  for (const double angle : {1.0, -2.5}) {
+    CAPTURE(angle);
+    const Eigen::Vector3d place =
+        Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * Eigen::Vector3d(-1.04, 0.21, 0.0);
+    Robot robot(turned(house(), angle), {{"robot.x", place.x()},
+                                         {"robot.y", place.y()},
+                                         {"robot.yaw", std::remainder(angle - 0.656, 2.0 * M_PI)}});
+    CHECK(open(robot).reason == "");
+    CHECK(robot.number("hinge.q") == doctest::Approx(1.6).epsilon(0.01));
+    CHECK(ok(park(robot)));
+    CHECK(close(robot).reason == "");
+    CHECK(std::abs(robot.number("hinge.q")) < 0.01);
+  }
+}
+
 /// A cupboard door of half a metre, turned the other way round, and an arm of joints before it.
 WorldSpec cupboard(const std::string& height_m) {
   std::string text = replaced(kDoorWorld, "mobile_palm", "mobile_six_joint");
