@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "harness/world/angles.h"
 
@@ -12,6 +13,10 @@ namespace {
 constexpr std::size_t kFirstApart = 2;  // joint whose parts the robot itself can be in the way of
 
 using Motions = std::array<Eigen::Isometry3d, kMostChainJoints>;
+
+Probe at_pose(const Probe& probe, const Eigen::Isometry3d& X_WS) {
+  return {probe.size_m, X_WS.translation(), X_WS.linear(), probe.form, probe.hull};
+}
 
 }  // namespace
 
@@ -43,14 +48,18 @@ void ChainSweep::add(BodyId id, std::size_t joint, const Eigen::Isometry3d& X_WJ
   const BodySpec& body = world_.layout().bodies[id];
   if (!body.collides) return;
   for (const BodyShape& shape : body.shapes) {
-    Part part{body.name, joint, world_.placed(id, shape), {}, {}};
+    const Probe own = world_.placed(id, shape);
+    Part part{body.name, joint, own, own, {}};
     Eigen::Isometry3d X_WS = Eigen::Isometry3d::Identity();
-    X_WS.linear() = part.probe.R_WS;
-    X_WS.translation() = part.probe.p_WS;
+    X_WS.linear() = own.R_WS;
+    X_WS.translation() = own.p_WS;
     part.X_JS = X_WJ.inverse() * X_WS;
-    part.own_size = part.probe.size_m;
-    part.probe.size_m += Eigen::Vector3d::Constant(2.0 * room_m);
-    parts_.push_back(part);
+    part.roomy.size_m += Eigen::Vector3d::Constant(2.0 * room_m);
+    if (room_m > 0.0 && own.form == ShapeForm::kHull) {
+      part.roomy.form = ShapeForm::kBox;
+      part.roomy.hull = nullptr;
+    }
+    parts_.push_back(std::move(part));
   }
 }
 
@@ -59,13 +68,12 @@ std::optional<Obstacle> ChainSweep::at(const JointVector& q) const {
   arm_.chain.motions(q, moved);
   for (const Part& part : parts_) {
     const Eigen::Isometry3d X_WS = X_WR_ * moved[part.joint] * part.X_JS;
-    Probe probe{part.probe.size_m, X_WS.translation(), X_WS.linear(), part.probe.form};
-    if (const auto hit = world_.find_obstacle(probe, ignored_, tolerance_m_)) {
+    if (const auto hit = world_.find_obstacle(at_pose(part.roomy, X_WS), ignored_, tolerance_m_)) {
       return Obstacle{part.name, hit->first, 0.0};
     }
     if (part.joint < kFirstApart) continue;
-    probe.size_m = part.own_size;
-    if (const auto hit = world_.find_obstacle(probe, all_but_robot_, tolerance_m_)) {
+    const Probe own = at_pose(part.own, X_WS);
+    if (const auto hit = world_.find_obstacle(own, all_but_robot_, tolerance_m_)) {
       if (hit->first != "floor") return Obstacle{part.name, hit->first, 0.0};
     }
   }
@@ -82,8 +90,9 @@ std::optional<Obstacle> ChainSweep::meets_turned(const JointVector& q, BodyId tu
   for (const Part& part : parts_) {
     if (part.joint + 1 == arm_.masses.size()) continue;
     const Eigen::Isometry3d X_WS = X_WR_ * moved[part.joint] * part.X_JS;
-    const Probe probe{part.own_size, round_vertical(X_WS.translation(), centre_W, -angle_rad),
-                      back * X_WS.linear(), part.probe.form, part.probe.hull};
+    Probe probe = at_pose(part.own, X_WS);
+    probe.p_WS = round_vertical(probe.p_WS, centre_W, -angle_rad);
+    probe.R_WS = back * probe.R_WS;
     if (world_.overlaps(probe, turned)) {
       return Obstacle{part.name, world_.layout().bodies[turned].name, 0.0};
     }

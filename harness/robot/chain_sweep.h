@@ -30,9 +30,9 @@ class ChainSweep {
   struct Part {
     std::string name;
     std::size_t joint = 0;
-    Probe probe;               // grown by the room
-    Eigen::Isometry3d X_JS;    // moves with the joint
-    Eigen::Vector3d own_size;  // without the room
+    Probe own;               // as it is
+    Probe roomy;             // grown by the room; of a hull the box round it
+    Eigen::Isometry3d X_JS;  // moves with the joint
   };
   void add(BodyId id, std::size_t joint, const Eigen::Isometry3d& X_WJ, double room_m);
 

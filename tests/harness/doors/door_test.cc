@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -334,6 +335,52 @@ TEST_CASE(
   }
   CHECK(opened >= 4);
   CHECK(refused >= 4);
+}
+
+/// A box as the convex hull of its corners.
+BodyShape hull_of(const BodyShape& box) {
+  std::vector<Eigen::Vector3d> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d sign((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
+    corners.push_back(0.5 * sign.cwiseProduct(box.size_m));
+  }
+  Eigen::Vector3d middle;
+  std::string why;
+  const auto hull = hull_with(corners,
+                              {{0, 2, 1},
+                               {1, 2, 3},
+                               {4, 5, 6},
+                               {5, 7, 6},
+                               {0, 1, 4},
+                               {1, 5, 4},
+                               {2, 6, 3},
+                               {3, 6, 7},
+                               {0, 4, 2},
+                               {2, 4, 6},
+                               {1, 3, 5},
+                               {3, 7, 5}},
+                              middle, why);
+  CAPTURE(why);
+  REQUIRE(hull.has_value());
+  BodyShape shape = box;
+  shape.form = ShapeForm::kHull;
+  shape.hull = std::make_shared<const ConvexHull>(*hull);
+  return shape;
+}
+
+TEST_CASE("a link of an arm that is a hull is tried as a box of its size is") {
+  for (const char* height : {"0.3", "2.0"}) {
+    std::string reasons[2];
+    for (const bool hulls : {false, true}) {
+      WorldSpec spec = cupboard(height);
+      BodyShape& fore = body_of(spec, "arm_fore").shapes.front();
+      fore.form = ShapeForm::kBox;
+      if (hulls) fore = hull_of(fore);
+      Robot robot(spec, {{"robot.x", -0.74}, {"robot.y", 0.04}, {"robot.yaw", 0.656}});
+      reasons[hulls ? 1 : 0] = open(robot).reason;
+    }
+    CHECK(reasons[0] == reasons[1]);
+  }
 }
 
 TEST_CASE("a forearm that would have to pass through the leaf that the hand leads is told") {
