@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,37 +15,6 @@
 
 namespace parallax::harness::test {
 namespace {
-
-const WorldSpec& house() {
-  static const WorldSpec world = door_world();
-  return world;
-}
-
-Outcome move(Robot& robot, const char* controller, State more = {}) {
-  more.insert({{"arm", std::string("arm")}, {"joint", std::string("hinge")}});
-  return robot.act(controller, more);
-}
-Outcome open(Robot& robot, State more = {}) { return move(robot, "open-door", std::move(more)); }
-Outcome close(Robot& robot, State more = {}) { return move(robot, "close-door", std::move(more)); }
-Outcome park(Robot& robot) { return robot.act("park", {{"arm", std::string("arm")}}); }
-Outcome settle(Robot& robot, double time_s) {
-  return robot.act("open-gripper", {{"arm", std::string("arm")}, {"settle_s", time_s}});
-}
-bool ok(const Outcome& outcome) { return outcome.status == SimStatus::kOk; }
-
-double margin(const Outcome& outcome, const char* name) {
-  return std::get<double>(outcome.margins.at(name));
-}
-
-/// The middle of the bar, from where the leaf is; not by the code that leads the hand.
-Eigen::Vector3d bar(const Robot& robot) {
-  return robot.position("leaf") + robot.rotation("leaf") * Eigen::Vector3d(-0.07, 0.36, 0.0);
-}
-
-double yaw_of(const Robot& robot, const char* body) {
-  const Eigen::Matrix3d R = robot.rotation(body);
-  return std::atan2(R(1, 0), R(0, 0));
-}
 
 /// To its stop, where it stays, and to the other.
 void open_and_close(const WorldSpec& spec) {
@@ -241,21 +209,6 @@ TEST_CASE("the same start gives the same bits, in any simulator") {
   CHECK(digests[0] == digests[1]);
 }
 
-/// The house seen in a mirror along y: the door turns the other way.
-WorldSpec mirrored(WorldSpec spec) {
-  body_of(spec, "leaf").p_WB.y() *= -1.0;
-  for (BodyShape& shape : body_of(spec, "leaf").shapes) shape.p_BS.y() *= -1.0;
-  JointSpec& hinge = joint_of(spec, "hinge");
-  hinge.p_WA.y() *= -1.0;
-  hinge.axis_W *= -1.0;
-  hinge.handle->p_CH.y() *= -1.0;
-  hinge.handle->approach.y() *= -1.0;
-  for (const char* name : {"wall_left", "wall_right", "stand", "block"}) {
-    body_of(spec, name).p_WB.y() *= -1.0;
-  }
-  return spec;
-}
-
 TEST_CASE("a door that turns the other way round is opened and closed alike") {
   // The shoulder is on the robot's left, so its place is no mirrored one.
   Robot robot(mirrored(house()), {{"robot.x", -0.92}, {"robot.y", -0.367}, {"robot.yaw", 0.656}});
@@ -296,101 +249,6 @@ TEST_CASE("a house that stands otherwise in the world has the same door") {
     CHECK(close(robot).reason == "");
     CHECK(std::abs(robot.number("hinge.q")) < 0.01);
   }
-}
-
-/// A cupboard door of half a metre, turned the other way round, and an arm of joints before it.
-WorldSpec cupboard(const std::string& height_m) {
-  std::string text = replaced(kDoorWorld, "mobile_palm", "mobile_six_joint");
-  text = replaced(text, "position_m: [-0.03, -0.005, 1.05]", "position_m: [-0.03, -0.175, 1.05]");
-  text = replaced(text, "[0.04, 0.84, 2.0]", "[0.04, 0.5, " + height_m + "]");
-  for (int i = 0; i < 2; ++i) text = replaced(text, "[-0.07, 0.36, 0]", "[-0.07, 0.19, 0]");
-  return mirrored(door_world(text));
-}
-
-TEST_CASE(
-    "an arm of joints opens a cupboard and shuts it, or says before it begins that it cannot") {
-  const WorldSpec spec = cupboard("0.3");
-  int opened = 0, refused = 0;
-  for (const double x : {-0.90, -0.79, -0.69}) {
-    for (const double y : {-0.06, 0.04, 0.09}) {
-      for (const double yaw : {0.156, 0.656}) {
-        CAPTURE(x);
-        CAPTURE(y);
-        CAPTURE(yaw);
-        Robot robot(spec, {{"robot.x", x}, {"robot.y", y}, {"robot.yaw", yaw}});
-        const Outcome outcome = open(robot);
-        CAPTURE(outcome.reason);
-        if (ok(outcome)) {
-          ++opened;
-          CHECK(robot.number("hinge.q") == doctest::Approx(1.6).epsilon(0.01));
-          CHECK(close(robot).reason == "");
-          CHECK(robot.number("hinge.q") < 0.01);
-        } else {
-          ++refused;
-          CHECK(outcome.reason.starts_with("manipulation-pose-unreachable: "));
-          CHECK(robot.number("hinge.q") < 0.001);
-        }
-      }
-    }
-  }
-  CHECK(opened >= 4);
-  CHECK(refused >= 4);
-}
-
-/// A box as the convex hull of its corners.
-BodyShape hull_of(const BodyShape& box) {
-  std::vector<Eigen::Vector3d> corners;
-  for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector3d sign((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
-    corners.push_back(0.5 * sign.cwiseProduct(box.size_m));
-  }
-  Eigen::Vector3d middle;
-  std::string why;
-  const auto hull = hull_with(corners,
-                              {{0, 2, 1},
-                               {1, 2, 3},
-                               {4, 5, 6},
-                               {5, 7, 6},
-                               {0, 1, 4},
-                               {1, 5, 4},
-                               {2, 6, 3},
-                               {3, 6, 7},
-                               {0, 4, 2},
-                               {2, 4, 6},
-                               {1, 3, 5},
-                               {3, 7, 5}},
-                              middle, why);
-  CAPTURE(why);
-  REQUIRE(hull.has_value());
-  BodyShape shape = box;
-  shape.form = ShapeForm::kHull;
-  shape.hull = std::make_shared<const ConvexHull>(*hull);
-  return shape;
-}
-
-TEST_CASE("a link of an arm that is a hull is tried as a box of its size is") {
-  for (const char* height : {"0.3", "2.0"}) {
-    std::string reasons[2];
-    for (const bool hulls : {false, true}) {
-      WorldSpec spec = cupboard(height);
-      BodyShape& fore = body_of(spec, "arm_fore").shapes.front();
-      fore.form = ShapeForm::kBox;
-      if (hulls) fore = hull_of(fore);
-      Robot robot(spec, {{"robot.x", -0.74}, {"robot.y", 0.04}, {"robot.yaw", 0.656}});
-      reasons[hulls ? 1 : 0] = open(robot).reason;
-    }
-    CHECK(reasons[0] == reasons[1]);
-  }
-}
-
-TEST_CASE("a forearm that would have to pass through the leaf that the hand leads is told") {
-  const State place = {{"robot.x", -0.74}, {"robot.y", 0.04}, {"robot.yaw", 0.656}};
-  Robot before_low(cupboard("0.3"), place);
-  CHECK(open(before_low).reason == "");
-  Robot before_high(cupboard("2.0"), place);
-  CHECK(open(before_high).reason ==
-        "manipulation-pose-unreachable: at the handle `arm_fore` would meet `leaf`");
-  CHECK(before_high.number("hinge.q") < 0.001);
 }
 
 }  // namespace

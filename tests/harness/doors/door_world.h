@@ -1,7 +1,10 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "tests/harness/arms/arm_robot.h"
 #include "tests/harness/config/scenario_text.h"
@@ -75,6 +78,56 @@ inline WorldSpec door_world(const std::string& world = kDoorWorld) {
 inline State beside(State more = {}) {
   more.insert({{"robot.x", -1.04}, {"robot.y", 0.21}, {"robot.yaw", -0.656}});
   return more;
+}
+
+inline const WorldSpec& house() {
+  static const WorldSpec world = door_world();
+  return world;
+}
+
+inline Outcome move(Robot& robot, const char* controller, State more = {}) {
+  more.insert({{"arm", std::string("arm")}, {"joint", std::string("hinge")}});
+  return robot.act(controller, more);
+}
+inline Outcome open(Robot& robot, State more = {}) {
+  return move(robot, "open-door", std::move(more));
+}
+inline Outcome close(Robot& robot, State more = {}) {
+  return move(robot, "close-door", std::move(more));
+}
+inline Outcome park(Robot& robot) { return robot.act("park", {{"arm", std::string("arm")}}); }
+inline Outcome settle(Robot& robot, double time_s) {
+  return robot.act("open-gripper", {{"arm", std::string("arm")}, {"settle_s", time_s}});
+}
+inline bool ok(const Outcome& outcome) { return outcome.status == SimStatus::kOk; }
+
+inline double margin(const Outcome& outcome, const char* name) {
+  return std::get<double>(outcome.margins.at(name));
+}
+
+/// The middle of the bar, from where the leaf is; not by the code that leads the hand.
+inline Eigen::Vector3d bar(const Robot& robot) {
+  return robot.position("leaf") + robot.rotation("leaf") * Eigen::Vector3d(-0.07, 0.36, 0.0);
+}
+
+inline double yaw_of(const Robot& robot, const char* body) {
+  const Eigen::Matrix3d R = robot.rotation(body);
+  return std::atan2(R(1, 0), R(0, 0));
+}
+
+/// The house seen in a mirror along y: the door turns the other way.
+inline WorldSpec mirrored(WorldSpec spec) {
+  body_of(spec, "leaf").p_WB.y() *= -1.0;
+  for (BodyShape& shape : body_of(spec, "leaf").shapes) shape.p_BS.y() *= -1.0;
+  JointSpec& hinge = joint_of(spec, "hinge");
+  hinge.p_WA.y() *= -1.0;
+  hinge.axis_W *= -1.0;
+  hinge.handle->p_CH.y() *= -1.0;
+  hinge.handle->approach.y() *= -1.0;
+  for (const char* name : {"wall_left", "wall_right", "stand", "block"}) {
+    body_of(spec, name).p_WB.y() *= -1.0;
+  }
+  return spec;
 }
 
 }  // namespace parallax::harness::test
