@@ -5,145 +5,11 @@
 #include <utility>
 
 #include "compiler/base/json.h"
-#include "harness/recording/bytes.h"
 #include "harness/recording/scene_json.h"
-#include "harness/simulator/state_json.h"
+#include "harness/simulator/motion_json.h"
 
 namespace parallax::harness {
 namespace {
-
-using OrderedJson = nlohmann::ordered_json;
-
-/// One line. A name that is not UTF-8 becomes one that is, rather than an exception.
-std::string line_of(const OrderedJson& json) { return base::json_text(json); }
-
-OrderedJson error_to_json(const ErrorReply& error) {
-  return OrderedJson{{"code", error.code}, {"message", error.message}};
-}
-
-OrderedJson arguments_to_json(const std::vector<ActionArgument>& arguments) {
-  OrderedJson list = OrderedJson::array();
-  for (const auto& argument : arguments) {
-    OrderedJson json{
-        {"name", argument.name}, {"unit", argument.unit}, {"required", argument.required}};
-    if (argument.example) {
-      json["example"] =
-          std::visit([](const auto& plain) { return OrderedJson(plain); }, *argument.example);
-    }
-    list.push_back(std::move(json));
-  }
-  return list;
-}
-
-OrderedJson parameters_to_json(const SimulatorInfo& info) {
-  OrderedJson parameters = OrderedJson::array();
-  for (const Parameter& p : info.parameters) {
-    OrderedJson json{{"name", p.name}, {"unit", p.unit}, {"settable", p.settable}};
-    if (p.lower) json["lower"] = *p.lower;
-    if (p.upper) json["upper"] = *p.upper;
-    parameters.push_back(std::move(json));
-  }
-  return parameters;
-}
-
-OrderedJson actions_to_json(const SimulatorInfo& info) {
-  OrderedJson actions = OrderedJson::array();
-  for (const std::string& name : info.actions) {
-    OrderedJson json{{"name", name}};
-    const auto arguments = info.arguments.find(name);
-    if (arguments != info.arguments.end()) json["args"] = arguments_to_json(arguments->second);
-    actions.push_back(std::move(json));
-  }
-  return actions;
-}
-
-OrderedJson info_to_json(std::int64_t protocol, const SimulatorInfo& info) {
-  OrderedJson out{{"protocol", protocol},
-                  {"name", info.name},
-                  {"version", info.version},
-                  {"determinism", info.determinism},
-                  {"seeds", info.seeds},
-                  {"time_step", info.timestep_s},
-                  {"params", parameters_to_json(info)},
-                  {"actions", actions_to_json(info)}};
-  if (!info.capabilities.empty()) out["capabilities"] = OrderedJson(info.capabilities);
-  if (info.min_real_time_factor > 0.0) out["min_real_time_factor"] = info.min_real_time_factor;
-  if (info.scene) {
-    // A world so large that it does not go in a line is simulated without recordings.
-    const auto scene = scene_text(*info.scene);
-    if (scene.size() < kMaxLineBytes / 2) out["pose"] = base::parse_ordered_json(scene);
-  }
-  return out;
-}
-
-OrderedJson outcome_to_json(const Outcome& outcome) {
-  OrderedJson json{{"status", to_string(outcome.status)}};
-  if (!outcome.reason.empty()) json["reason"] = outcome.reason;
-  json["sim_time"] = outcome.sim_time_s;
-  if (!outcome.margins.empty()) json["margins"] = state_json<OrderedJson>(outcome.margins);
-  if (!outcome.object.empty()) json["object"] = outcome.object;
-  if (!outcome.motion.frames.empty()) json["motion"] = base64(outcome.motion.frames);
-  if (!outcome.motion.fault.empty()) json["motion_fault"] = outcome.motion.fault;
-  return json;
-}
-
-struct RequestEncoder {
-  OrderedJson& json;
-  void operator()(const HelloRequest& hello) const {
-    json["method"] = "hello";
-    json["params"] = OrderedJson{{"protocol", OrderedJson(hello.protocols)}};
-  }
-  void operator()(const ResetRequest& reset) const {
-    json["method"] = "reset";
-    json["params"] =
-        OrderedJson{{"state", state_json<OrderedJson>(reset.state)}, {"seed", reset.seed}};
-    if (reset.record_interval_s > 0.0) json["params"]["pose_interval"] = reset.record_interval_s;
-  }
-  void operator()(const ActRequest& act) const {
-    json["method"] = "act";
-    json["params"] = OrderedJson{{"action", act.action},
-                                 {"args", state_json<OrderedJson>(act.arguments)},
-                                 {"sim_time_limit", act.sim_time_limit_s}};
-  }
-  void operator()(const ObserveRequest&) const { json["method"] = "observe"; }
-  void operator()(const CloseRequest&) const { json["method"] = "close"; }
-  void operator()(const DescribeRequest&) const { json["method"] = "describe"; }
-  void operator()(const UnknownRequest& unknown) const { json["method"] = unknown.method; }
-  void operator()(const PerformRequest& perform) const {
-    OrderedJson list = OrderedJson::array();
-    for (const auto& request : perform.requests) {
-      std::visit(RequestEncoder{list.emplace_back(OrderedJson::object())}, request);
-    }
-    json["method"] = "perform";
-    json["params"] = OrderedJson{{"requests", std::move(list)}};
-  }
-};
-
-struct ReplyEncoder {
-  OrderedJson& json;
-  void operator()(const ErrorReply& error) const { json["error"] = error_to_json(error); }
-  void operator()(const HelloReply& hello) const {
-    json["result"] = info_to_json(hello.protocol, hello.info);
-  }
-  void operator()(const OutcomeReply& reply) const {
-    json["result"] = outcome_to_json(reply.outcome);
-  }
-  void operator()(const ObserveReply& reply) const {
-    json["result"] = OrderedJson{{"state", state_json<OrderedJson>(reply.state)}};
-  }
-  void operator()(const CloseReply&) const { json["result"] = OrderedJson{{"status", "ok"}}; }
-  void operator()(const DescribeReply& reply) const {
-    json["result"] = OrderedJson{{"params", parameters_to_json(reply.info)},
-                                 {"actions", actions_to_json(reply.info)}};
-  }
-  void operator()(const PerformReply& reply) const {
-    OrderedJson list = OrderedJson::array();
-    for (const auto& single : reply.replies) {
-      std::visit(ReplyEncoder{list.emplace_back(OrderedJson::object())}, single);
-    }
-    json["result"] = OrderedJson{{"replies", std::move(list)}};
-  }
-};
 
 using Json = nlohmann::json;
 
@@ -381,76 +247,6 @@ HelloReply read_info(FieldReader& reader, const Json& result) {
   return hello;
 }
 
-/// The pose of a body as a list of three or seven numbers.
-std::optional<Pose> pose_of(const Json& json) {
-  if (!json.is_array() || (json.size() != 3 && json.size() != 7)) return std::nullopt;
-  Pose pose;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const auto number = base::json_as<double>(json[i]);
-    if (!number) return std::nullopt;
-    (i < 3 ? pose.p[i] : pose.q[i - 3]) = *number;
-  }
-  return pose;
-}
-
-/// What is wrong with it; empty: nothing.
-std::string read_frame(const Json& json, PlainFrame& frame) {
-  const Json* time = base::json_member(json, "t");
-  const auto number = time == nullptr ? std::nullopt : base::json_as<double>(*time);
-  if (!number) return "`t` of a frame is missing or no number";
-  frame.time_s = *number;
-  if (const Json* poses = base::json_member(json, "bodies")) {
-    if (!poses->is_object()) return "`bodies` of a frame is no object";
-    for (const auto& [name, value] : poses->items()) {
-      const auto pose = pose_of(value);
-      if (!pose) return "the pose of `" + name + "` is no list of 3 or 7 numbers";
-      frame.poses.emplace_back(name, *pose);
-    }
-  }
-  const Json* held = base::json_member(json, "held");
-  if (held == nullptr) return {};
-  if (!held->is_object()) return "`held` of a frame is no object";
-  frame.held.emplace();
-  for (const auto& [name, value] : held->items()) {
-    const auto gripper = base::json_as<std::string>(value);
-    if (!gripper) return "what holds `" + name + "` is no name";
-    frame.held->emplace_back(name, *gripper);
-  }
-  return {};
-}
-
-/// Motion is told besides the outcome: what is wrong with it does not make the outcome wrong.
-void read_motion(const Json& result, OutcomeReply& reply) {
-  auto& motion = reply.outcome.motion;
-  if (const Json* packed = base::json_member(result, "motion")) {
-    const auto text = base::json_as<std::string>(*packed);
-    auto bytes = text ? from_base64(*text) : std::nullopt;
-    if (!bytes) {
-      motion.fault = "`motion` is no text in base64";
-      return;
-    }
-    motion.frames = *std::move(bytes);
-  }
-  if (const Json* fault = base::json_member(result, "motion_fault")) {
-    motion.fault = base::json_as<std::string>(*fault).value_or("`motion_fault` is no text");
-  }
-  const Json* poses = base::json_member(result, "poses");
-  if (poses == nullptr) return;
-  if (!poses->is_array()) {
-    motion.fault = "`poses` is no list of frames";
-    return;
-  }
-  for (const Json& item : *poses) {
-    PlainFrame frame;
-    auto why = read_frame(item, frame);
-    if (!why.empty()) {
-      motion.fault = std::move(why);
-      return;
-    }
-    reply.frames.push_back(std::move(frame));
-  }
-}
-
 OutcomeReply read_outcome(FieldReader& reader, const Json& result) {
   OutcomeReply reply;
   const std::string word = reader.string(result, "status");
@@ -542,22 +338,6 @@ ReplyBody read_result(FieldReader& reader, const Json& result, const Request& as
 
 }  // namespace
 
-std::string encode_request(const Request& request) {
-  OrderedJson json{{"id", request.id}};
-  std::visit(RequestEncoder{json}, request.body);
-  return line_of(json);
-}
-
-std::string encode_reply(std::int64_t id, const ReplyBody& reply) {
-  OrderedJson json{{"id", id}};
-  std::visit(ReplyEncoder{json}, reply);
-  return line_of(json);
-}
-
-std::string encode_error_without_id(const ErrorReply& error) {
-  return line_of(OrderedJson{{"id", nullptr}, {"error", error_to_json(error)}});
-}
-
 std::string first_not_finite(const State& state) {
   for (const auto& [name, value] : state) {
     const double* number = std::get_if<double>(&value);
@@ -565,8 +345,6 @@ std::string first_not_finite(const State& state) {
   }
   return {};
 }
-
-std::string encode_state(const State& state) { return line_of(state_json<OrderedJson>(state)); }
 
 std::variant<Request, Malformed> decode_request(std::string_view line) {
   if (line.size() > kMaxLineBytes) return malformed("line_too_long", "line longer than 1 MiB");
