@@ -41,41 +41,66 @@ std::optional<Eigen::Vector3d> aim_of(const Scene& scene, const WorldSpec& spec,
   return std::nullopt;
 }
 
+/// What was out of reach, and by how much: less than 0.
+struct ShortReach {
+  std::string name;
+  Eigen::Vector3d there_W = Eigen::Vector3d::Zero();
+  double margin_m = 0.0;
+};
+
+/// The arm moves along x alone: its end is where what is missing begins.
+void mark_line(const Scene& scene, const WorldSpec& spec, const ShortReach& missed,
+               SceneAction& action) {
+  const auto base = origin_of(scene, base_body(spec));
+  if (!base) return;
+  Eigen::Vector3d end = missed.there_W, shoulder = missed.there_W;
+  end.x() += end.x() > base->x() ? missed.margin_m : -missed.margin_m;
+  shoulder.x() = base->x();
+  action.reach = SceneReach{shoulder, 0.0, std::abs(end.x() - base->x())};
+  action.measures.push_back(
+      {end, missed.there_W,
+       fmt::format("`{}` {} out of reach", missed.name, length_text(-missed.margin_m))});
+  action.notes.emplace_back("red dots: as far as the arm reaches");
+}
+
+/// A chain has no reach that is one number.
+void mark_chain(const Scene& scene, const ArmSpec& arm, const ShortReach& missed,
+                SceneAction& action) {
+  const auto hand = origin_of(scene, arm.palm_body);
+  if (!hand) return;
+  action.measures.push_back({*hand, missed.there_W,
+                             fmt::format("`{}`: the joints end {} short of it", missed.name,
+                                         length_text(-missed.margin_m))});
+}
+
+void mark_gantry(const SceneArm& shown, const ArmSpec& arm, const ShortReach& missed,
+                 SceneAction& action) {
+  const bool far = (missed.there_W - shown.from_W).norm() > arm.min_reach_m;
+  const double limit_m = far ? arm.max_reach_m : arm.min_reach_m;
+  const double distance_m = far ? limit_m - missed.margin_m : limit_m + missed.margin_m;
+  action.reach = SceneReach{shown.from_W, arm.min_reach_m, arm.max_reach_m};
+  action.measures.push_back({shown.from_W, missed.there_W,
+                             fmt::format("`{}` {} from the shoulder, {} {} reach ({})", missed.name,
+                                         length_text(distance_m), length_text(-missed.margin_m),
+                                         far ? "out of" : "too near for", length_text(limit_m))});
+  action.notes.push_back(
+      fmt::format("red dots: reach of the {} arm, {:g} m", arm.name, arm.max_reach_m));
+}
+
 void add_reach(const Scene& scene, const WorldSpec& spec, const State& arguments, double margin_m,
                SceneAction& action) {
-  std::string name;
-  const auto there = aim_of(scene, spec, arguments, name);
+  ShortReach missed;
+  const auto there = aim_of(scene, spec, arguments, missed.name);
   if (!there) return;
-  if (!spec.mobile) {
-    // The arm moves along x alone: its end is where what is missing begins.
-    const auto base = origin_of(scene, base_body(spec));
-    if (!base) return;
-    Eigen::Vector3d end = *there;
-    end.x() += there->x() > base->x() ? margin_m : -margin_m;
-    Eigen::Vector3d shoulder = *there;
-    shoulder.x() = base->x();
-    action.reach = SceneReach{shoulder, 0.0, std::abs(end.x() - base->x())};
-    action.measures.push_back(
-        {end, *there, fmt::format("`{}` {} out of reach", name, length_text(-margin_m))});
-    action.notes.emplace_back("red dots: as far as the arm reaches");
-    return;
-  }
+  missed.there_W = *there;
+  missed.margin_m = margin_m;
+  if (!spec.mobile) return mark_line(scene, spec, missed, action);
   const auto wanted = word_of(arguments, "arm");
   for (const ArmSpec& arm : spec.mobile->arms) {
     if (arm.name != wanted) continue;
+    if (!arm.chain.empty()) mark_chain(scene, arm, missed, action);
     for (const SceneArm& shown : scene.arms) {
-      if (shown.name != wanted) continue;
-      const bool far = (*there - shown.from_W).norm() > arm.min_reach_m;
-      const double limit_m = far ? arm.max_reach_m : arm.min_reach_m;
-      const double distance_m = far ? limit_m - margin_m : limit_m + margin_m;
-      action.reach = SceneReach{shown.from_W, arm.min_reach_m, arm.max_reach_m};
-      action.measures.push_back(
-          {shown.from_W, *there,
-           fmt::format("`{}` {} from the shoulder, {} {} reach ({})", name, length_text(distance_m),
-                       length_text(-margin_m), far ? "out of" : "too near for",
-                       length_text(limit_m))});
-      action.notes.push_back(
-          fmt::format("red dots: reach of the {} arm, {:g} m", wanted, arm.max_reach_m));
+      if (shown.name == wanted) mark_gantry(shown, arm, missed, action);
     }
   }
 }

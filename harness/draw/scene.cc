@@ -34,7 +34,7 @@ std::vector<SceneArm> arms_of(const PhysicsWorld& world, const MobileRobotSpec& 
   std::vector<SceneArm> arms;
   for (const ArmSpec& arm : robot.arms) {
     const auto palm = layout.find_body(arm.palm_body);
-    if (!base || !palm) continue;
+    if (!base || !palm || !arm.chain.empty()) continue;
     const Eigen::Vector3d p_BS = arm.p_BS + lift_m * Eigen::Vector3d::UnitZ();
     arms.push_back(
         {arm.name, world.position(*base) + world.rotation(*base) * p_BS, world.position(*palm)});

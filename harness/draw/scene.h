@@ -20,8 +20,8 @@ struct SceneBox {
   Eigen::Vector3d origin_W = Eigen::Vector3d::Zero();  // of the body
 };
 
-/// From a shoulder to its palm. The simulator has no body there; without the line a hand would
-/// hang in the air.
+/// From a shoulder to a palm on a gantry. The simulator has no body there; without the line a hand
+/// would hang in the air. Chains of joints have bodies.
 struct SceneArm {
   std::string name;
   Eigen::Vector3d from_W = Eigen::Vector3d::Zero(), to_W = Eigen::Vector3d::Zero();

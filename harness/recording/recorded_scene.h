@@ -42,7 +42,7 @@ struct RecordedBody {
   friend bool operator==(const RecordedBody&, const RecordedBody&) = default;
 };
 
-/// From a shoulder to a hand: the simulator may have no bodies between them.
+/// From a shoulder to a hand where the simulator has no bodies between them.
 struct RecordedArm {
   std::string name;
   std::size_t from = 0, to = 0;                      // numbers of bodies

@@ -89,7 +89,7 @@ void add_robot(const MobileRobotSpec& robot, const WorldLayout& layout, Recorded
   const auto& on_spec = layout.bodies[*on];
   for (const auto& arm : robot.arms) {
     const auto palm = layout.find_body(arm.palm_body);
-    if (!palm) continue;
+    if (!palm || !arm.chain.empty()) continue;
     const Eigen::Vector3d shoulder_W = base_spec.p_WB + turn_about_z(base_spec.yaw_rad) * arm.p_BS;
     const Eigen::Vector3d in_body =
         turn_about_z(on_spec.yaw_rad).transpose() * (shoulder_W - on_spec.p_WB);

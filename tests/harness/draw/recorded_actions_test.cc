@@ -12,6 +12,7 @@
 
 #include "harness/draw/action_recorder.h"
 #include "harness/recording/recording_format.h"
+#include "harness/robot/motion_recorder.h"
 #include "tests/harness/kitchen/kitchen_world.h"
 
 namespace parallax::harness {
@@ -192,6 +193,21 @@ TEST_CASE("a recording shows the ways, grips, gazes and lengths that a simulatio
   auto other = *read;
   other.scene.bodies.front().name += "'";
   CHECK_FALSE(unlike_world(other, spec).empty());
+}
+
+TEST_CASE("an arm of joints is drawn by its links: no line stands for it") {
+  base::SourceFiles files;
+  base::DiagnosticSink sink;
+  const auto scenario =
+      load_scenario(PARALLAX_SOURCE_DIR "/scenarios/arms/warehouse_arms.yaml", files, sink);
+  REQUIRE(scenario.has_value());
+  OdeSimulator simulator(scenario->world);
+  REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
+  const Scene scene = scene_of(simulator.world(), scenario->world);
+  CHECK(scene.arms.empty());
+  CHECK(std::any_of(scene.boxes.begin(), scene.boxes.end(),
+                    [](const SceneBox& box) { return box.body == "left_fore"; }));
+  CHECK(recorded_scene(scenario->world, simulator.world().layout()).arms.empty());
 }
 
 }  // namespace
