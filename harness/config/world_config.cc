@@ -84,6 +84,21 @@ SuspensionSpec read_suspension(const YamlNode& node, base::DiagnosticSink& sink)
   return springs;
 }
 
+/// Two numbers, or nothing in the place of one of them: no stop on that side.
+void read_slide(const YamlFields& fields, JointSpec& joint) {
+  const YamlNode* range = fields.find(Key::kRangeM);
+  const auto is_none = [](const YamlNode& node) { return node.kind == YamlNode::Kind::kNull; };
+  if (range != nullptr && range->is_list() && range->items.size() == 2 &&
+      is_none(range->items[0]) != is_none(range->items[1])) {
+    const bool has_low = is_none(range->items[1]);
+    (has_low ? joint.low_m : joint.high_m) = read_number(
+        range->items[has_low ? 0 : 1], key_text(Key::kRangeM), kAnyNumber, fields.sink());
+  } else if (const auto both = fields.numbers(Key::kRangeM, 2)) {
+    joint.low_m = (*both)[0];
+    joint.high_m = (*both)[1];
+  }
+}
+
 JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
   static constexpr std::array<std::string_view, 4> kTypes = {"slider", "fixed", "gantry", "hinge"};
   JointSpec joint;
@@ -106,10 +121,7 @@ JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
   fields.require(Key::kChild);
   fields.text(Key::kChild, joint.child);
   read_axis(fields, joint);
-  if (const auto range = fields.numbers(Key::kRangeM, 2)) {
-    joint.low_m = (*range)[0];
-    joint.high_m = (*range)[1];
-  }
+  read_slide(fields, joint);
   read_vector(fields, Key::kAtM, joint.p_WA);
   if (const auto range = fields.numbers(Key::kRangeRad, 2)) {
     joint.low_rad = (*range)[0];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <span>
 #include <system_error>
 
 #include "compiler/base/codes/scenarios.h"
@@ -52,9 +53,15 @@ class MapNode {
   void vector(std::string_view key, const Eigen::Vector3d& v) {
     numbers(key, {v.x(), v.y(), v.z()});
   }
+  /// Nothing in the place of one that is not there.
   void stops(std::string_view key, const std::optional<double>& low,
-             const std::optional<double>& high, double most) {
-    if (low || high) numbers(key, {low.value_or(-most), high.value_or(most)});
+             const std::optional<double>& high) {
+    if (!low && !high) return;
+    auto list = node_at(YamlNode::Kind::kList, node_.range);
+    for (const auto& stop : {low, high}) {
+      list.items.push_back(stop ? scalar(*stop) : node_at(YamlNode::Kind::kNull, node_.range));
+    }
+    put(key, std::move(list));
   }
   YamlNode take() { return std::move(node_); }
 
@@ -160,12 +167,12 @@ YamlNode joint_node(const JointSpec& joint, const base::SourceRange& range) {
   if (joint.type == JointType::kHinge) {
     out.word(Key::kType, "hinge");
     out.vector(Key::kAtM, joint.p_WA);
-    out.stops(Key::kRangeRad, joint.low_rad, joint.high_rad, kMostTurn_rad);
+    out.stops(Key::kRangeRad, joint.low_rad, joint.high_rad);
     out.number_unless_zero(Key::kMaxTorqueNm, joint.max_torque_nm);
     out.number_unless_zero(Key::kDampingNmS, joint.damping_nm_s);
   } else {
     out.word(Key::kType, "slider");
-    out.stops(Key::kRangeM, joint.low_m, joint.high_m, 0.5 * kMaxExtent_m);
+    out.stops(Key::kRangeM, joint.low_m, joint.high_m);
     out.number_unless_zero(Key::kMaxForceN, joint.max_force_n);
     out.number_unless_zero(Key::kDampingNSM, joint.damping_n_s_m);
   }
@@ -182,6 +189,39 @@ std::set<std::string> materials_in(const YamlNode& world) {
     }
   }
   return out;
+}
+
+/// Keys by which what is laid over an imported thing is one of its own. A `mesh` may be one, too.
+constexpr std::array<std::string_view, 8> kOwnBodyKeys = {
+    Key::kSizeM, Key::kSphere, Key::kCylinder, Key::kCapsule,
+    Key::kHull,  Key::kMesh,   Key::kShapes,   Key::kRing};
+constexpr std::array<std::string_view, 2> kOwnJointKeys = {Key::kType, Key::kChild};
+
+/// Two things of one name, one of the file and one of the scenario, would become one unseen.
+void refuse_mergers(const YamlNode& imported, const YamlNode& world, std::string_view section,
+                    std::string_view kind, std::span<const std::string_view> own_keys,
+                    base::DiagnosticSink& sink) {
+  const auto* over = world.find(section);
+  const auto* under = imported.find(section);
+  if (over == nullptr || under == nullptr) return;
+  for (const YamlEntry& entry : over->value.entries) {
+    const auto* below = under->value.find(entry.key);
+    if (below == nullptr) continue;
+    const auto own = std::find_if(own_keys.begin(), own_keys.end(), [&](std::string_view key) {
+      return entry.value.find(key) != nullptr;
+    });
+    if (own == own_keys.end()) continue;
+    // Several files may lay their keys over it: the place is in the one with this key.
+    const auto& key_range = entry.value.find(*own)->key_range;
+    sink.error(codes::kBadImport,
+               key_range.file == entry.key_range.file ? entry.key_range : key_range,
+               fmt::format("it has a {0} `{1}` too, and the {0} here is another, for it has `{2}`",
+                           kind, entry.key, *own))
+        .note(below->key_range, fmt::format("the {} of the file", kind))
+        .help(
+            "Give one of the two another name; docs/import.md says which keys can be laid over "
+            "what is imported.");
+  }
 }
 
 struct ImportFormat {
@@ -207,8 +247,13 @@ class WorldImporter {
       const auto* other = world_.find(format.key);
       if (other == nullptr) continue;
       if (found != nullptr) {
-        sink_.error(codes::kUnknownKey, other->key_range, format.key,
-                    fmt::format("`{}`, which has `{}`", Key::kWorld, format_->key));
+        sink_
+            .error(codes::kUnknownKey, other->key_range, format.key,
+                   fmt::format("`{}`, which has `{}`", Key::kWorld, format_->key))
+            .note(found->key_range, fmt::format("`{}` is here", format_->key))
+            .help(
+                "A world takes over one file; put both into one, or describe one of them in the "
+                "scenario itself.");
         return false;
       }
       found = other;
@@ -252,12 +297,27 @@ class WorldImporter {
       return;
     }
     YamlFields fields(entry.value, key_text(entry.key), sink_);
-    const bool is_robot = format_->key == Key::kUrdf;
-    fields.only({Key::kFile, Key::kAtM, Key::kYawRad, is_robot ? Key::kFixed : Key::kFile});
+    if (format_->key == Key::kUrdf) {
+      fields.only({Key::kFile, Key::kAtM, Key::kYawRad, Key::kFixed});
+    } else if (const auto* fixed = entry.value.find(Key::kFixed)) {
+      refuse_fixed(*fixed);
+    } else {
+      fields.only({Key::kFile, Key::kAtM, Key::kYawRad});
+    }
     if (const auto* file = fields.require(Key::kFile)) set_file(*file, Key::kFile);
     read_vector(fields, Key::kAtM, input_.p_WI);
     fields.number(Key::kYawRad, kAnyNumber, input_.yaw_rad);
     fields.boolean(Key::kFixed, input_.fixed);
+  }
+
+  void refuse_fixed(const YamlEntry& fixed) {
+    const bool is_sdf = format_->key == Key::kSdf;
+    sink_
+        .error(codes::kUnknownKey, fixed.key_range, fixed.key,
+               fmt::format("`{}`: only a robot in URDF is held so", format_->key))
+        .help(is_sdf ? "Remove it; in SDF a model that is `<static>`, or a joint whose parent is "
+                       "`world`, stands fast."
+                     : "Remove it; in MJCF a body without a joint stands fast in the world.");
   }
 
   void set_file(const YamlNode& node, std::string_view key) {
@@ -344,7 +404,10 @@ class WorldImporter {
       return entry.key == format_->key || entry.key == Key::kModels;
     });
     const auto range = world_.range;
-    world_ = merged(under.take(), std::move(world_));
+    YamlNode imported = under.take();
+    refuse_mergers(imported, world_, Key::kBodies, "body", kOwnBodyKeys, sink_);
+    refuse_mergers(imported, world_, Key::kJoints, "joint", kOwnJointKeys, sink_);
+    world_ = merged(std::move(imported), std::move(world_));
     world_.range = range;
     add_friction(made.friction, whole);
   }

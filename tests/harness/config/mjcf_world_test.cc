@@ -284,21 +284,16 @@ TEST_CASE("an arm in MJCF, put elsewhere and turned, is MuJoCo's own and stands 
   check_still(scenario->world, 0.002);
 }
 
-TEST_CASE("what is shipped stands still in MuJoCo's own engine too, but for hulls") {
+TEST_CASE("what is shipped stands still in MuJoCo's own engine too") {
   if (no_mjcf() || !has_mujoco()) return;
   for (const bool is_arm : {true, false}) {
     CAPTURE(is_arm);
     Workspace workspace;
     file_in_scenarios(workspace, is_arm ? "robots/column_arm.xml" : "worlds/workshop.xml");
     if (!is_arm) file_in_scenarios(workspace, "worlds/workshop");
-    // The engine has no hulls: a box takes the place of the plane's.
-    const std::string boxed =
-        "  bodies:\n"
-        "    plane_tool: {shapes: [{size_m: [0.24, 0.064, 0.055], at_m: [0, 0, 0.0275]}]}\n"
-        "    cup: {size_m: [0.1, 0.1, 0.1], mass_kg: 0.2, position_m: [5, 5, 0.05]}\n";
     if (!is_arm && !reads_meshes()) continue;
     const auto scenario = workspace.load(scenario_with(
-        "  mjcf: " + (is_arm ? "column_arm.xml\n" + kCup : "workshop.xml\n" + boxed)));
+        std::string("  mjcf: ") + (is_arm ? "column_arm.xml\n" : "workshop.xml\n") + kCup));
     for (const auto& one : workspace.reports()) CHECK_MESSAGE(one.starts_with("W5144"), one);
     REQUIRE(scenario.has_value());
     const auto world = make_mujoco_world(scenario->world);
