@@ -66,12 +66,12 @@ class MjcfImporter {
  public:
   MjcfImporter(const ImportInput& input, const MjcfText& text, const MjcfModel& model,
                ImportedWorld& world)
-      : input_(input), model_(model), places_(text), world_(world) {}
+      : input_(input), text_(text), model_(model), places_(text), world_(world) {}
 
   void run() {
     if (model_.fault) {
       const auto place = places_.line(model_.fault_line, model_.fault_tag);
-      return fault(place.offset, place.inside + *model_.fault);
+      return fault(place.offset, place.inside + text_.in_names_given(*model_.fault));
     }
     set_gravity();
     count_parts();
@@ -344,8 +344,8 @@ class MjcfImporter {
 
   void note_rest() {
     for (const MjcfRest& one : model_.rest) {
-      const auto offset = places_.first(one.tag);
-      const std::string first = one.first.empty() ? "unnamed" : one.first;
+      const auto offset = one.tag == "body" ? places_.body(one.body) : places_.first(one.tag);
+      const std::string first = one.first.empty() ? "unnamed" : text_.in_names_given(one.first);
       for (std::size_t i = 0; i < one.count; ++i) out_.left_out.add(one.kind, first, offset);
     }
   }
@@ -354,6 +354,7 @@ class MjcfImporter {
     std::vector<std::size_t> joints, geoms;
   };
   const ImportInput& input_;
+  const MjcfText& text_;
   const MjcfModel& model_;
   MjcfPlaces places_;
   ImportedWorld& world_;

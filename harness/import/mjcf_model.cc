@@ -62,7 +62,7 @@ class Fields {
         g.dimension, g.friction, g.has_priority, g.has_margin, g.is_soft);
   }
   void one(MjcfMesh& m) { all(m.name, m.points, m.faces); }
-  void one(MjcfRest& r) { all(r.kind, r.tag, r.count, r.first); }
+  void one(MjcfRest& r) { all(r.kind, r.tag, r.count, r.first, r.body); }
 
   Archive& archive_;
 };

@@ -79,6 +79,7 @@ struct MjcfRest {
   std::string tag;   // of its first element, or its section
   std::size_t count = 0;
   std::string first;
+  std::uint32_t body = 0;  // its number, where the tag is that of a body
 };
 
 struct MjcfModel {

@@ -140,7 +140,7 @@ class Translator {
     body.centre = frame_at(model_.body_ipos, model_.body_iquat, i);
     body.moments_kg_m2 = vector_at(model_.body_inertia, i);
     if (model_.body_mocapid[i] >= 0)
-      add("bodies that are led (mocap), which stand", "body", body.name);
+      add("bodies that are led (mocap), which stand", "body", body.name, number(i));
   }
 
   void add_joint(int i) {
@@ -261,7 +261,28 @@ class Translator {
     if (option.density != 0.0 || option.viscosity != 0.0) {
       add("forces of air and water (density, viscosity)", "option", "option");
     }
+    add_options(option);
     add_flags(option.disableflags);
+  }
+
+  /// How the engine counts, where the file says so: ours has a `solver` of its own.
+  void add_options(const mjOption& own) {
+    mjOption usual;
+    mj_defaultOption(&usual);
+    const auto note = [&](bool differs, const char* name) {
+      if (differs) add("settings of MuJoCo's engine (option)", "option", name);
+    };
+    note(own.timestep != usual.timestep, "timestep");
+    note(own.integrator != usual.integrator, "integrator");
+    note(own.cone != usual.cone, "cone");
+    note(own.impratio != usual.impratio, "impratio");
+    note(own.solver != usual.solver, "solver");
+    note(own.iterations != usual.iterations, "iterations");
+    note(own.tolerance != usual.tolerance, "tolerance");
+    note(own.noslip_iterations != usual.noslip_iterations, "noslip_iterations");
+    if (own.collision != usual.collision) {
+      add("the choice of which contacts there are (collision)", "option", "option");
+    }
   }
 
   /// Those that change what a world does, but for gravity, which is taken over.
@@ -282,13 +303,14 @@ class Translator {
     for (int i = 0; i < count; ++i) add(kind, tag, name_at(names, i));
   }
 
-  void add(const std::string& kind, const std::string& tag, const std::string& name) {
+  void add(const std::string& kind, const std::string& tag, const std::string& name,
+           std::uint32_t body = 0) {
     for (MjcfRest& one : out_.rest) {
       if (one.kind != kind) continue;
       ++one.count;
       return;
     }
-    out_.rest.push_back({kind, tag, 1, name.substr(0, 200)});
+    out_.rest.push_back({kind, tag, 1, name.substr(0, 200), body});
   }
 
   const mjModel& model_;
@@ -316,7 +338,7 @@ extern "C" __attribute__((visibility("default"))) bool parallax_read_mjcf(
     set_fault(why.what(), model);
   }
   if (!model.fault && !warning.empty()) {
-    model.rest.push_back({"what MuJoCo warns of", "mujoco", 1, in_one_line(warning)});
+    model.rest.push_back({"what MuJoCo warns of", "mujoco", 1, in_one_line(warning), 0});
   }
   g_warnings = nullptr;
   return true;

@@ -19,6 +19,8 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMaxMjcfFiles = 500;
 constexpr std::size_t kMaxMjcfBytes = std::size_t{256} << 20U;  // of all meshes
 
+constexpr std::string_view kMeshName = "file_of_mesh_";
+
 std::string shortened(std::string_view text) { return std::string(text.substr(0, 120)); }
 
 bool is_word(std::string_view text) {
@@ -285,7 +287,11 @@ class FileNamer {
         return fail(element.offset, fmt::format("the meshes are more than {} files, or {} MiB",
                                                 kMaxMjcfFiles, kMaxMjcfBytes >> 20U));
       }
-      name = fmt::format("mesh{}{}", names_.size(), extension);
+      if (found.bytes.empty()) {
+        return fail(element.offset, fmt::format("`{}` is empty", shortened(file.value)));
+      }
+      name = fmt::format("{}{}{}", kMeshName, names_.size(), extension);
+      out_.mesh_names.emplace(name, shortened(file.value));
       out_.files.push_back({name, std::move(found.bytes)});
     }
     std::string text = fmt::format("file=\"{}\"", name);
@@ -370,6 +376,23 @@ MjcfText::Place MjcfText::place_of(std::size_t offset) const {
                                                              origin.offset, source.text.size())),
                                    '\n');
   return {source.offset, fmt::format("in `{}`, line {}: ", source.name, line)};
+}
+
+std::string MjcfText::in_names_given(const std::string& said) const {
+  std::string out;
+  for (std::size_t at = 0; at < said.size();) {
+    // The longest that stands here: one name may be how another begins.
+    const std::pair<const std::string, std::string>* best = nullptr;
+    if (said.compare(at, kMeshName.size(), kMeshName) == 0) {
+      for (const auto& one : mesh_names) {
+        if (said.compare(at, one.first.size(), one.first) != 0) continue;
+        if (best == nullptr || one.first.size() > best->first.size()) best = &one;
+      }
+    }
+    out += best == nullptr ? std::string(1, said[at]) : best->second;
+    at += best == nullptr ? 1 : best->first.size();
+  }
+  return out;
 }
 
 MjcfText vetted_mjcf(const ImportInput& input) {

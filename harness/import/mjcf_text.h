@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,14 +32,17 @@ struct MjcfText {
   Place place_of(std::size_t offset) const;
   /// The same of an offset in `included`, without `inside`.
   std::size_t place_of_included(std::size_t offset) const;
+  /// What the reader says, with the names that the meshes' files have in the description.
+  std::string in_names_given(const std::string& said) const;
 
   struct Source {
     std::string name;  // as it was included; empty: the file itself
     std::string text;
     std::size_t offset = 0;  // of what includes it, in ImportInput::text
   };
-  std::deque<Source> sources;   // which stay where they are
-  EditedText included, edited;  // of the sources, of that text
+  std::deque<Source> sources;                     // which stay where they are
+  EditedText included, edited;                    // of the sources, of that text
+  std::map<std::string, std::string> mesh_names;  // as given, by those of our own
 };
 
 MjcfText vetted_mjcf(const ImportInput& input);

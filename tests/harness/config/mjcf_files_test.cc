@@ -196,6 +196,39 @@ TEST_CASE("what a hull adds to a mesh of MJCF is said once for the mesh") {
   }
 }
 
+TEST_CASE(
+    "what is wrong with a mesh of MJCF is told with the name of its file in the description") {
+  if (skips_mjcf()) return;
+  std::string lying(84, ' ');  // binary STL with more faces than there may be
+  lying.replace(80, 4, "\xff\xff\xff\x7f");
+  Workspace workspace;
+  std::filesystem::create_directories(workspace.folder() / "parts/deep");
+  workspace.write("parts/fine.obj", kTetrahedron);
+  workspace.write("parts/deep/lying.stl", lying);
+  for (const char* empty : {"empty.obj", "empty.stl", "empty.msh"}) {
+    workspace.write(std::string("parts/") + empty, "");
+  }
+  // The bad one is the twelfth file: names of our own must not be taken for how others begin.
+  const auto with = [&](const std::string& file) {
+    std::string meshes;
+    for (int i = 1; i < 12; ++i) {
+      const std::string name = "fine" + std::to_string(i) + ".obj";
+      workspace.write("parts/" + name, kTetrahedron);
+      meshes += "<mesh file='" + name + "'/>\n";
+    }
+    return "<mujoco>\n<compiler meshdir='parts'/><asset>\n" + meshes + "<mesh name='bad' file='" +
+           file + "'/></asset>\n<worldbody><geom type='mesh' mesh='bad'/></worldbody></mujoco>";
+  };
+  for (const std::string empty : {"empty.obj", "empty.stl", "empty.msh"}) {
+    CHECK(refusal_of(workspace, with(empty)) ==
+          "E5143 at 14:1: the file cannot be taken over: `" + empty + "` is empty");
+  }
+  const auto said = refusal_of(workspace, with("deep/lying.stl"));
+  CHECK(said.starts_with("E5143 at 14:1: the file cannot be taken over: number of faces"));
+  CHECK(said.find("'deep/lying.stl'") != said.npos);
+  CHECK(said.find("file_of_mesh") == said.npos);
+}
+
 TEST_CASE("a mesh of a million faces is refused, as one that is too long is") {
   if (skips_mjcf()) return;
   Workspace workspace;

@@ -114,6 +114,49 @@ TEST_CASE("so is what a file in MJCF has besides bodies") {
        "2 of them: sensors; the first is `feeler`"});
 }
 
+TEST_CASE("settings of the engine that are not the usual ones are listed, at the options") {
+  if (skips_mjcf()) return;
+  const auto said = [](const std::string& option) {
+    Workspace workspace;
+    CHECK(taken_over(workspace, file_with("\n<option " + option + "/>\n<worldbody>" +
+                                          box_at(0, "box") + "</worldbody>"))
+              .has_value());
+    const auto all = workspace.reports();
+    REQUIRE(all.size() <= 1);
+    return all.empty() ? std::string() : all.front();
+  };
+  CHECK(said("timestep='0.002' integrator='Euler' cone='pyramidal' impratio='1' solver='Newton' "
+             "iterations='100' tolerance='1e-8' noslip_iterations='0' collision='all'")
+            .empty());
+  const std::string settings = "settings of MuJoCo's engine (option); the first is `";
+  for (const char* one :
+       {"timestep='0.01'", "integrator='RK4'", "cone='elliptic'", "impratio='5'", "solver='CG'",
+        "iterations='7'", "tolerance='1e-4'", "noslip_iterations='3'"}) {
+    const std::string text = one;
+    CHECK(said(text) == "W5144 at 3:1: not taken over, 1 of them: " + settings +
+                            text.substr(0, text.find('=')) + "`");
+  }
+  CHECK(said("cone='elliptic' timestep='0.01'") ==
+        "W5144 at 3:1: not taken over, 2 of them: " + settings + "timestep`");
+  CHECK(said("collision='predefined'") ==
+        "W5144 at 3:1: not taken over, 1 of them: the choice of which contacts there are "
+        "(collision); the first is `option`");
+}
+
+TEST_CASE("a body that is led is told at its own place") {
+  if (skips_mjcf()) return;
+  Workspace workspace;
+  CHECK(taken_over(workspace, bodies_with(box_at(0, "one") + "\n" +
+                                          "<body name='two' pos='3 0 1'><geom size='0.1'/></body>\n"
+                                          "<body name='led' pos='4 0 1' mocap='true'><geom "
+                                          "size='0.1'/></body>\n<body name='also' pos='5 0 1' "
+                                          "mocap='true'><geom size='0.1'/></body>"))
+            .has_value());
+  CHECK(workspace.reports() ==
+        std::vector<std::string>{"W5144 at 5:1: not taken over, 2 of them: bodies that are led "
+                                 "(mocap), which stand; the first is `led`"});
+}
+
 TEST_CASE("what MuJoCo keeps apart is kept apart, and said where it cannot be") {
   if (skips_mjcf()) return;
   const auto free = [](double x, const std::string& name, const char* bits) {
