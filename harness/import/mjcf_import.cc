@@ -70,8 +70,10 @@ class MjcfImporter {
 
   void run() {
     if (model_.fault) {
-      const auto place = places_.line(model_.fault_line, model_.fault_tag);
-      return fault(place.offset, place.inside + text_.in_names_given(*model_.fault));
+      const std::string said = text_.in_names_given(*model_.fault);
+      const bool is_of_mesh = model_.fault_tag.empty() && said != *model_.fault;
+      const auto place = places_.line(model_.fault_line, is_of_mesh ? "mesh" : model_.fault_tag);
+      return fault(place.offset, place.inside + said);
     }
     set_gravity();
     count_parts();

@@ -227,6 +227,12 @@ TEST_CASE(
   CHECK(said.starts_with("E5143 at 14:1: the file cannot be taken over: number of faces"));
   CHECK(said.find("'deep/lying.stl'") != said.npos);
   CHECK(said.find("file_of_mesh") == said.npos);
+  // At the mesh, also where its line begins with something else.
+  CHECK(refusal_of(workspace,
+                   "<mujoco>\n<asset><mesh name='bad' "
+                   "file='parts/deep/lying.stl'/></asset>\n<worldbody>"
+                   "<geom type='mesh' mesh='bad'/></worldbody></mujoco>")
+            .starts_with("E5143 at 2:8: the file cannot be taken over: number of faces"));
 }
 
 TEST_CASE("a mesh of a million faces is refused, as one that is too long is") {
