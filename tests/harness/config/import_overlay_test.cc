@@ -1,5 +1,9 @@
 // What a scenario lays over an imported world, and stops that such a world cannot have.
 
+#include <algorithm>
+#include <memory>
+
+#include "harness/engine/mujoco_module.h"
 #include "tests/harness/config/mjcf_text.h"
 
 namespace parallax::harness::test {
@@ -133,6 +137,8 @@ TEST_CASE("an included robot does not become what an imported file calls as the 
   CHECK_FALSE(workspace.load(scenario_with("  include: [robot.yaml, room.yaml]\n")).has_value());
   REQUIRE(workspace.sink.error_count() == 1);
   const auto found = workspace.sink.sorted().back();
+  CHECK(found.message.ends_with(
+      "it has a body `base` too, and the body here is another, for it has `size_m`"));
   REQUIRE(found.range.has_value());
   CHECK(std::string_view(workspace.files[found.range->file].name()).ends_with("robot.yaml"));
 }
@@ -232,16 +238,26 @@ TEST_CASE("a slider with one stop halts there, and nowhere on the other side") {
            ", max_force_n: 50}}\n";
   };
   const WorldSpec spec = accepted(workspace, with("[-0.2, ~]")).world;
-  for (const double sign : {-1.0, 1.0}) {
-    OdeWorld world(spec);
-    REQUIRE_FALSE(world.reset(default_placements(world.layout()), 1).has_value());
-    const SliderId rail = *world.layout().find_slider("rail");
-    world.set_motor(rail, sign * 2.0, 50.0);
-    places_after(world, 2.0);
-    if (sign < 0.0) {
-      CHECK(world.slider_position_m(rail) == doctest::Approx(-0.2).epsilon(0.01));
-    } else {
-      CHECK(world.slider_position_m(rail) > 3.0);
+  for (const bool in_mujoco : {false, true}) {
+    if (in_mujoco && !has_mujoco()) continue;
+    CAPTURE(in_mujoco);
+    for (const double sign : {-1.0, 1.0}) {
+      std::unique_ptr<PhysicsWorld> world;
+      if (in_mujoco) {
+        world = make_mujoco_world(spec);
+      } else {
+        world = std::make_unique<OdeWorld>(spec);
+      }
+      REQUIRE_FALSE(world->reset(default_placements(world->layout()), 1).has_value());
+      const SliderId rail = *world->layout().find_slider("rail");
+      world->set_motor(rail, sign * 2.0, 50.0);
+      places_after(*world, 2.0);
+      const double at_m = world->slider_position_m(rail);
+      if (sign < 0.0) {
+        CHECK(std::abs(at_m + 0.2) < 0.01);
+      } else {
+        CHECK(at_m > 3.0);
+      }
     }
   }
   for (const char* bad : {"[~]", "[0, x]", "[~, 1, 2]", "[~, ~]", "~", "[{}, ~]"}) {
