@@ -13,6 +13,7 @@ constexpr double kHandAcceleration_m_s2 = 0.3;
 constexpr double kAtStop_rad = 0.002;
 constexpr double kTouchingDoor_m = 0.002;  // overlaps up to here are play in the measures
 constexpr double kDoorStep_rad = 0.035;    // between the places of the arc that are tried
+constexpr double kLeastGap_m = 0.0005;     // of pads with something between them
 constexpr double kBehind_m = 0.5;          // what a palm pushes is looked for from so far
 constexpr int kChainPlaces = 3;            // of an arm of joints, whose ways are tried later
 
@@ -107,6 +108,7 @@ class MoveDoor final : public MobileController {
       add_squeeze(number("effort_n"), number("hold_s"), [this] {
         return arm().opening_m() <= handle_.width_m + 2.0 * number("clearance_m") + 0.002;
       });
+      add_step([this] { check_hold(); });
     }
     add_turning();
     if (pulls) add_opening([this] { return arm().spec().opening_m; });
@@ -154,16 +156,48 @@ class MoveDoor final : public MobileController {
   }
 
   /// The way in is straight, and then the hand turns with the door: what is in its way makes the
-  /// handle unreachable.
+  /// handle unreachable. On its way in the leaf is in the way, too, its handle included: open pads
+  /// pass it at the clearance, and a palm ends so far from what it is to push.
   void check_hand() {
     ArmWays ways = arm_ways(leaf_, 0.0);
     auto fault = ways.along(standoff_, grip_);
+    if (!fault) fault = arm_ways(std::nullopt, kTouchingDoor_m).along(standoff_, grip_);
     if (!fault) fault = ways.round(grip_, axis(), arc_rad(), leaf_);
     if (!fault) return;
     State margins;
     if (fault->hit && fault->hit->clearance_m) margins["clearance"] = *fault->hit->clearance_m;
     refuse_with(kManipulationUnreachable,
                 fmt::format("at the handle {}", fault->text("would meet")), std::move(margins));
+  }
+
+  /// Pads that have closed on air, above the bar or beside it, lead nothing.
+  void check_hold() {
+    if (leaf_between_pads()) return;
+    refuse_with(kGraspFailed,
+                fmt::format("nothing of `{}` is between the closed pads: the handle of `{}` "
+                            "was missed",
+                            world().layout().bodies[leaf_].name, joint().name));
+  }
+
+  /// Does the leaf reach into the gap between the faces of the pads?
+  bool leaf_between_pads() const {
+    const double gap_m = arm().opening_m();
+    if (gap_m < kLeastGap_m) return false;
+    Probe gap = face(arm().spec().near_pad_body);
+    const Eigen::Vector3d to_far = face(arm().spec().far_pad_body).p_WS - gap.p_WS;
+    Eigen::Index across = 0;
+    (gap.R_WS.transpose() * to_far).cwiseAbs().maxCoeff(&across);
+    gap.form = ShapeForm::kBox;
+    gap.hull = nullptr;
+    gap.p_WS += 0.5 * to_far;
+    gap.size_m[across] = gap_m;
+    return world().overlaps(gap, leaf_);
+  }
+
+  /// What a pad touches with comes first in the list of its shapes.
+  Probe face(const std::string& pad) const {
+    const BodyId id = *world().layout().find_body(pad);
+    return world().placed(id, world().layout().bodies[id].shapes.front());
   }
 
   void add_turning() {

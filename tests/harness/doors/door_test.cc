@@ -198,6 +198,56 @@ TEST_CASE("a palm that would have to push from behind the closed door does not r
   CHECK(robot.number("hinge.q") == doctest::Approx(0.0));
 }
 
+/// Refused as long as the door is shut and the hand is where it was.
+void check_refused_untouched(const WorldSpec& spec, const std::string& reason) {
+  Robot robot(spec, beside());
+  const Eigen::Vector3d hand = robot.position("palm");
+  double most_rad = 0.0;
+  robot.watch(
+      [&](const OdeSimulator&) { most_rad = std::max(most_rad, std::abs(yaw_of(robot, "leaf"))); });
+  const Outcome outcome = open(robot);
+  CHECK(outcome.status == SimStatus::kFailed);
+  CHECK(outcome.reason == reason);
+  CHECK(most_rad < 1e-3);
+  CHECK((robot.position("palm") - hand).norm() < 0.005);
+}
+
+TEST_CASE(
+    "a hand that would come through the leaf, or with a pad in it, does not reach for the handle") {
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    WorldSpec spec = stepped_by(engine, house());
+    HandleSpec& handle = *joint_of(spec, "hinge").handle;
+    SUBCASE("from behind the leaf") {
+      handle.approach = {-1.0, 0.0, 0.0};
+      check_refused_untouched(
+          spec, "manipulation-pose-unreachable: at the handle `far_pad` would meet `leaf`");
+    }
+    SUBCASE("the pads along the bar") {
+      handle.wrist_rad = 0.0;
+      check_refused_untouched(
+          spec, "manipulation-pose-unreachable: at the handle `near_pad` would meet `leaf`");
+    }
+  }
+}
+
+TEST_CASE("pads that close on air, above the bar, do not lead the hand along the arc") {
+  for (const EngineKind engine : engines()) {
+    CAPTURE(to_string(engine));
+    WorldSpec spec = stepped_by(engine, house());
+    HandleSpec& handle = *joint_of(spec, "hinge").handle;
+    handle.p_CH.z() = 0.035;  // the bar is 2 cm thick, a pad 3 cm high
+    handle.width_m = 0.06;    // something of the bar is that near
+    Robot robot(spec, beside());
+    const Outcome outcome = open(robot);
+    CHECK(outcome.status == SimStatus::kFailed);
+    CHECK(outcome.reason ==
+          "object-not-held: nothing of `leaf` is between the closed pads: the handle of `hinge` "
+          "was missed");
+    CHECK(std::abs(robot.number("hinge.q")) < 0.01);
+  }
+}
+
 TEST_CASE("the same start gives the same bits, in any simulator") {
   std::vector<std::string> digests;
   for (int i = 0; i < 2; ++i) {
