@@ -175,6 +175,9 @@ class ValueChecker {
       return report(fault->name, fault->text);
     }
     if (const auto fault = wrong_effort(controller, call.arguments, world_, layout_)) {
+      return report(fault->name, fault->text);
+    }
+    if (const auto fault = wrong_tolerance(controller, call.arguments, layout_)) {
       report(fault->name, fault->text);
     }
   }

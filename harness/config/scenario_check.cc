@@ -115,6 +115,12 @@ class NameChecker {
       if (depends_on_event(*text) != (event != nullptr)) continue;
       check(action, *argument, event == nullptr ? *text : with_arguments(*text, *event), event);
     }
+    // Where the joint depends on the event, the calls of a trace tell.
+    const auto fault = event == nullptr ? wrong_tolerance(*controller, action.arguments, layout_)
+                                        : std::optional<ArgumentFault>();
+    if (!fault) return;
+    sink_.error(codes::kBadWorld, action.argument_sources.at(fault->name),
+                fmt::format("actions/{}/{}", action.event, fault->name), fault->text);
   }
 
  private:

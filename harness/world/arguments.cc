@@ -190,6 +190,42 @@ std::optional<ArgumentFault> wrong_effort(const ControllerSpec& spec, const Stat
                             quoted(name_of("object")), force, most, quoted(arm->finger_joint))};
 }
 
+std::optional<ArgumentFault> wrong_tolerance(const ControllerSpec& spec, const State& given,
+                                             const WorldLayout& layout) {
+  const ArgumentSpec* joint = find_argument(spec, "joint");
+  const auto named = given.find("joint");
+  if (joint == nullptr || named == given.end()) return std::nullopt;
+  const auto* name = std::get_if<std::string>(&named->second);
+  if (name == nullptr || !is_name(*joint)) return std::nullopt;
+  const bool door = joint->unit == "door";
+  const char* const key = door ? "stop_tolerance_rad" : "stop_tolerance_m";
+  const char* const unit = door ? "rad" : "m";
+  double way = std::numeric_limits<double>::infinity();
+  if (const auto hinge = layout.find_hinge(*name); door && hinge) {
+    const JointSpec& spec_of = layout.hinges[*hinge];
+    if (spec_of.low_rad && spec_of.high_rad) way = *spec_of.high_rad - *spec_of.low_rad;
+  } else if (const auto slider = layout.find_slider(*name); !door && slider) {
+    const JointSpec& spec_of = layout.sliders[*slider];
+    if (spec_of.low_m && spec_of.high_m) way = *spec_of.high_m - *spec_of.low_m;
+  }
+  const ArgumentSpec* tolerance = find_argument(spec, key);
+  const auto said = given.find(key);
+  if (tolerance == nullptr) return std::nullopt;
+  if (said != given.end()) {
+    const double value = as_number(said->second).value_or(0.0);
+    if (value < 0.5 * way) return std::nullopt;
+    return ArgumentFault{
+        key, fmt::format("is {:g} {}, half of the {:g} {} between the stops of {} or more: it "
+                         "would tell neither stop from the middle",
+                         value, unit, way, unit, quoted(*name))};
+  }
+  if (tolerance->fallback < 0.5 * way) return std::nullopt;
+  return ArgumentFault{
+      "joint", fmt::format("is {}, whose stops are {:g} {} apart: the {:g} {} of `{}` are half of "
+                           "that or more; give less",
+                           quoted(*name), way, unit, tolerance->fallback, unit, key)};
+}
+
 std::vector<std::string> names_for(const ArgumentSpec& argument, const WorldSpec& world,
                                    const WorldLayout& layout) {
   std::vector<std::string> names;
@@ -237,6 +273,9 @@ std::variant<Arguments, std::string> Arguments::check(const ControllerSpec& spec
     return "argument " + quoted(fault->name) + " " + fault->text;
   }
   if (const auto fault = wrong_effort(spec, given, world, layout)) {
+    return "argument " + quoted(fault->name) + " " + fault->text;
+  }
+  if (const auto fault = wrong_tolerance(spec, given, layout)) {
     return "argument " + quoted(fault->name) + " " + fault->text;
   }
   for (const ArgumentSpec& one : spec.arguments) {

@@ -106,6 +106,10 @@ std::optional<ArgumentFault> wrong_together(const ControllerSpec& spec, const St
 /// finger has to be able to exert it.
 std::optional<ArgumentFault> wrong_effort(const ControllerSpec& spec, const State& given,
                                           const WorldSpec& world, const WorldLayout& layout);
+/// The same of how near to its stop a drawer or a door has to be, given or the fallback: from half
+/// of its way on, it would be where it is to be before anything has moved it.
+std::optional<ArgumentFault> wrong_tolerance(const ControllerSpec& spec, const State& given,
+                                             const WorldLayout& layout);
 
 /// The names that would do, sorted.
 std::vector<std::string> names_for(const ArgumentSpec& argument, const WorldSpec& world,

@@ -91,5 +91,44 @@ TEST_CASE("drawers and doors are told apart, with the names that would do") {
             .find("stop_tolerance_rad") != std::string::npos);
 }
 
+TEST_CASE("a tolerance of half the way between the stops, or more, is refused where it is") {
+  const auto door = [](const char* tolerance) {
+    return std::string("\n  Open(): {controller: open-door, arm: arm, joint: hinge") + tolerance +
+           "}\n";
+  };
+  CHECK(reports_of(kDoorWorld, door(", stop_tolerance_rad: 0.79")).empty());
+  for (const char* value : {"0.8", "4"}) {
+    const std::string report =
+        only_report(kDoorWorld, door((", stop_tolerance_rad: " + std::string(value)).c_str()));
+    CHECK(report.starts_with("E5126 at "));
+    CHECK(report.find(std::string("actions/Open/stop_tolerance_rad: is ") + value +
+                      " rad, half of the 1.6 rad between the stops of `hinge` or more") !=
+          std::string::npos);
+  }
+  // What is not given counts as well.
+  CHECK(only_report(replaced(kDoorWorld, "range_rad: [0, 1.6]", "range_rad: [0, 0.09]"), door(""))
+            .find("actions/Open/joint: is `hinge`, whose stops are 0.09 rad apart: the 0.05 rad of "
+                  "`stop_tolerance_rad` are half of that or more") != std::string::npos);
+}
+
+TEST_CASE("the same of a drawer") {
+  const std::string drawer =
+      R"(    box: {size_m: [0.3, 0.3, 0.1], mass_kg: 2, position_m: [2, 3, 0.7]}
+    stand: {size)";
+  const std::string slide =
+      "    slide: {child: box, axis: x, range_m: [0, 0.3], handle: {at_m: [-0.15, 0, 0], approach: "
+      "[1, 0, 0], width_m: 0.02}}\n  places:";
+  const std::string world =
+      replaced(replaced(kDoorWorld, "    stand: {size", drawer), "  places:", slide);
+  for (const char* controller : {"open-drawer", "close-drawer"}) {
+    const std::string action = std::string("\n  Move(): {controller: ") + controller +
+                               ", arm: arm, joint: slide, stop_tolerance_m: 0.14}\n";
+    CHECK(reports_of(world, action).empty());
+    CHECK(only_report(world, replaced(action, "0.14", "0.15"))
+              .find("actions/Move/stop_tolerance_m: is 0.15 m, half of the 0.3 m between the stops "
+                    "of `slide` or more") != std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace parallax::harness::test
