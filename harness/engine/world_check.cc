@@ -198,6 +198,28 @@ std::vector<Grip> grips_of(const WorldSpec& spec) {
   return grips;
 }
 
+/// The hand of a gantry hangs where its bodies are placed, which need not be near the shoulder.
+void check_hand_near(const MobileRobotSpec& robot, const ArmSpec& arm, const Jaws& jaws,
+                     const PhysicsWorld& world, ProblemList& problems) {
+  if (!arm.chain.empty()) return;
+  const WorldLayout& layout = world.layout();
+  const BodyId base = *layout.find_body(robot.base_body), palm = *layout.find_body(arm.palm_body);
+  Eigen::Vector3d shoulder = world.position(base) + world.rotation(base) * arm.p_BS;
+  if (const auto torso = layout.find_slider(robot.torso_joint)) {
+    shoulder.z() -= layout.sliders[*torso].low_m.value_or(0.0);  // the shoulder's is the lowest
+  }
+  const Eigen::Vector3d tool = world.position(palm) + world.rotation(palm) * jaws.tool_P();
+  const double distance_m = (tool - shoulder).norm();
+  if (distance_m >= arm.min_reach_m - kTouching_m && distance_m <= arm.max_reach_m + kTouching_m) {
+    return;
+  }
+  problems.add(
+      "robot/arms/" + arm.name,
+      fmt::format("the hand is placed {:.3f} m from its shoulder, the reach is {:.3f} m to "
+                  "{:.3f} m: what moves `{}` has to move `{}` and its pads along",
+                  distance_m, arm.min_reach_m, arm.max_reach_m, robot.base_body, arm.palm_body));
+}
+
 class GripperChecker {
  public:
   GripperChecker(const WorldSpec& spec, ProblemList& problems)
@@ -205,7 +227,9 @@ class GripperChecker {
     const std::unique_ptr<const PhysicsWorld> owned = make_world(spec);
     const PhysicsWorld& world = *owned;
     for (const ArmSpec& arm : spec.mobile->arms) {
-      const auto limits = Jaws(arm, world).opening_limits_m();
+      const Jaws jaws(arm, world);
+      check_hand_near(*spec.mobile, arm, jaws, world, problems);
+      const auto limits = jaws.opening_limits_m();
       const auto finger = world.layout().find_slider(arm.finger_joint);
       ranges_.push_back(
           {&arm, limits.first, limits.second, world.layout().sliders[*finger].max_force_n});

@@ -130,5 +130,15 @@ TEST_CASE("the same of a drawer") {
   }
 }
 
+TEST_CASE("a hand that is placed out of its arm's reach is told with what to do") {
+  const std::string moved = "    chassis: {position_m: [-3, 1, 0]}\n    stand: {size";
+  const std::string report = only_report(replaced(kDoorWorld, "    stand: {size", moved));
+  CAPTURE(report);
+  CHECK(report.starts_with("E5126 at "));
+  CHECK(report.find("robot/arms/arm: the hand is placed 3.") != std::string::npos);
+  CHECK(report.find("what moves `chassis` has to move `palm` and its pads along") !=
+        std::string::npos);
+}
+
 }  // namespace
 }  // namespace parallax::harness::test
