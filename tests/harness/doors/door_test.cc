@@ -231,6 +231,32 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "a palm pushes a door open from behind, but not on a way in that leads through the leaf") {
+  for (const bool through : {false, true}) {
+    CAPTURE(through);
+    WorldSpec spec = house();
+    joint_of(spec, "hinge").high_rad = 0.3;
+    joint_of(spec, "hinge").handle->approach = {through ? 1.0 : -1.0, 0.0, 0.0};
+    body_of(spec, "stand").p_WB = {0.33, 0.74, 0.35};
+    body_of(spec, "block").p_WB = {0.33, 0.74, 0.75};
+    for (PlaceSpec& place : spec.places) place.p_FP = {0.33, 0.74, 0.75};
+    Robot robot(spec, {{"robot.x", 0.5}, {"robot.y", 0.1}, {"robot.yaw", M_PI}});
+    take_block(robot);
+    const Outcome outcome = open(robot);
+    CAPTURE(outcome.reason);
+    if (through) {
+      CHECK(outcome.reason.starts_with("manipulation-pose-unreachable: at the handle `"));
+      CHECK(outcome.reason.ends_with("` would meet `leaf`"));
+      CHECK(std::abs(robot.number("hinge.q")) < 1e-3);
+    } else {
+      CHECK(outcome.reason == "");
+      CHECK(robot.number("hinge.q") == doctest::Approx(0.3).epsilon(0.02));
+    }
+    CHECK(robot.flag("block.held_by.arm"));
+  }
+}
+
 TEST_CASE("pads that close on air, above the bar, do not lead the hand along the arc") {
   for (const EngineKind engine : engines()) {
     CAPTURE(to_string(engine));
