@@ -234,11 +234,14 @@ TEST_CASE("a search that is stopped does not say that there is no trace") {
   const CliFixture cli;
   const auto plan = std::string(PARALLAX_SOURCE_DIR) + "/scenarios/kitchen/plan1.yaml";
   for (const auto* limit : {"0.001", "0.01", "0.03", "0.1", "0.2"}) {
-    for (const auto* command : {"rates", "run"}) {
+    for (const std::string command : {"rates", "run"}) {
       CAPTURE(command);
       CAPTURE(limit);
       const auto result = cli.parallax({command, plan, "--time-limit", limit});
-      CHECK(result.code == 4);
+      // A fast machine finds the carton that slips in less.
+      const bool has_found = command == "run" && result.code == 1;
+      CHECK((has_found || result.code == 4));
+      if (has_found) CHECK(result.out.find("Holding(left,milk1)") != std::string::npos);
       CHECK(result.err.find("meets the state constraints") == std::string::npos);
     }
   }
