@@ -281,8 +281,10 @@ void Hosts::listen(dxJoint* contact, std::optional<std::uint32_t> one,
   const auto of_robot = [&](std::optional<std::uint32_t> link) {
     return link && links_[*link].of_robot && links_[*link].host != nullptr ? link : std::nullopt;
   };
+  const std::array links = {of_robot(first), of_robot(second)};
+  if (!links[0] && !links[1]) return;
   Feedback::Contact& heard = feedback_->of_contacts.emplace_back();
-  heard.links = {of_robot(first), of_robot(second)};
+  heard.links = links;
   dJointSetFeedback(contact, &heard.forces);
 }
 

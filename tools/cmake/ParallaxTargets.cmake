@@ -221,12 +221,20 @@ function(parallax_test name)
   endif()
 endfunction()
 
-# parallax_module(NAME): what is loaded while the program runs has all that it calls, which a linker does not ask
-# by itself. Sanitizers leave their own functions to the program.
+# parallax_module(NAME LOADED_BY TARGET SOURCES FILE... LIBRARIES LIBRARY...): what is loaded while the program runs,
+# by a library of it. It has all that it calls, which a linker does not ask by itself; sanitizers leave their own
+# functions to the program. Nor does it tell where it was built.
 function(parallax_module name)
-  # Nor does it tell where it was built.
-  set_target_properties(${name} PROPERTIES BUILD_RPATH "")
+  cmake_parse_arguments(arg "" "LOADED_BY" "SOURCES;LIBRARIES" ${ARGN})
+  add_library(${name} MODULE ${arg_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE parallax_warnings Eigen3::Eigen fmt::fmt ${arg_LIBRARIES})
+  set_target_properties(${name} PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden
+    VISIBILITY_INLINES_HIDDEN ON BUILD_RPATH "" INSTALL_RPATH "" UNITY_BUILD OFF
+    LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/modules)
   if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
     target_link_options(${name} PRIVATE -Wl,--no-undefined)
   endif()
+  add_dependencies(${arg_LOADED_BY} ${name})
+  install(TARGETS ${name} COMPONENT program LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/parallax)
 endfunction()

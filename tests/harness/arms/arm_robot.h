@@ -2,43 +2,20 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
 #include <utility>
 
-#include "harness/config/scenario.h"
 #include "harness/robot/ode_simulator.h"
+#include "tests/harness/config/scenario_world.h"
+#include "tests/harness/world/hand_made.h"
 
 namespace parallax::harness {
-
-/// The world of a scenario below `scenarios`.
-inline WorldSpec world_of(const std::string& scenario_file) {
-  base::SourceFiles files;
-  base::DiagnosticSink sink;
-  const auto scenario =
-      load_scenario(PARALLAX_SOURCE_DIR "/scenarios/" + scenario_file, files, sink);
-  std::string reports;
-  for (const auto& d : sink.sorted()) reports += d.message + "\n";
-  CAPTURE(reports);
-  REQUIRE(scenario.has_value());
-  return scenario->world;
-}
 
 inline const WorldSpec& chain_warehouse() {
   static const WorldSpec world = world_of("arms/warehouse_arms.yaml");
   return world;
-}
-
-inline BodySpec& body_of(WorldSpec& spec, std::string_view name) {
-  return *std::find_if(spec.bodies.begin(), spec.bodies.end(),
-                       [&](const BodySpec& body) { return body.name == name; });
-}
-
-inline JointSpec& joint_of(WorldSpec& spec, std::string_view name) {
-  return *std::find_if(spec.joints.begin(), spec.joints.end(),
-                       [&](const JointSpec& joint) { return joint.name == name; });
 }
 
 /// A robot that is asked for actions, and watched while it does them.

@@ -13,6 +13,7 @@
 #include "harness/draw/action_recorder.h"
 #include "harness/recording/recording_format.h"
 #include "harness/robot/motion_recorder.h"
+#include "tests/harness/config/scenario_world.h"
 #include "tests/harness/kitchen/kitchen_world.h"
 
 namespace parallax::harness {
@@ -196,18 +197,14 @@ TEST_CASE("a recording shows the ways, grips, gazes and lengths that a simulatio
 }
 
 TEST_CASE("an arm of joints is drawn by its links: no line stands for it") {
-  base::SourceFiles files;
-  base::DiagnosticSink sink;
-  const auto scenario =
-      load_scenario(PARALLAX_SOURCE_DIR "/scenarios/arms/warehouse_arms.yaml", files, sink);
-  REQUIRE(scenario.has_value());
-  OdeSimulator simulator(scenario->world);
+  const WorldSpec world = world_of("arms/warehouse_arms.yaml");
+  OdeSimulator simulator(world);
   REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
-  const Scene scene = scene_of(simulator.world(), scenario->world);
+  const Scene scene = scene_of(simulator.world(), world);
   CHECK(scene.arms.empty());
   CHECK(std::any_of(scene.boxes.begin(), scene.boxes.end(),
                     [](const SceneBox& box) { return box.body == "left_fore"; }));
-  CHECK(recorded_scene(scenario->world, simulator.world().layout()).arms.empty());
+  CHECK(recorded_scene(world, simulator.world().layout()).arms.empty());
 }
 
 }  // namespace

@@ -2,30 +2,13 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
+#include "tests/harness/config/scenario_world.h"
 
 namespace parallax::harness {
 
 const WorldSpec& kitchen_world() {
-  static const WorldSpec world = [] {
-    base::SourceFiles files;
-    base::DiagnosticSink sink;
-    const auto scenario =
-        load_scenario(PARALLAX_SOURCE_DIR "/scenarios/kitchen/plan2.yaml", files, sink);
-    REQUIRE(scenario.has_value());
-    return scenario->world;
-  }();
+  static const WorldSpec world = world_of("kitchen/plan2.yaml");
   return world;
-}
-
-BodySpec& body_of(WorldSpec& spec, std::string_view name) {
-  return *std::find_if(spec.bodies.begin(), spec.bodies.end(),
-                       [&](const BodySpec& body) { return body.name == name; });
-}
-
-JointSpec& joint_of(WorldSpec& spec, std::string_view name) {
-  return *std::find_if(spec.joints.begin(), spec.joints.end(),
-                       [&](const JointSpec& joint) { return joint.name == name; });
 }
 
 void Kitchen::start(const State& initial) {

@@ -5,14 +5,12 @@
 
 #include "harness/config/scenario.h"
 #include "harness/robot/ode_simulator.h"
+#include "tests/harness/world/hand_made.h"
 
 namespace parallax::harness {
 
 /// The world of scenarios/kitchen, as the scenario files say.
 const WorldSpec& kitchen_world();
-
-BodySpec& body_of(WorldSpec& spec, std::string_view name);
-JointSpec& joint_of(WorldSpec& spec, std::string_view name);
 
 /// Short names for what the plans do. Every action is allowed 60 s.
 class Kitchen {

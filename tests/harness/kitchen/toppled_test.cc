@@ -3,27 +3,24 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "tests/harness/config/scenario_world.h"
 #include "tests/harness/kitchen/kitchen_world.h"
 
 namespace parallax::harness {
 namespace {
 
 TEST_CASE("a carton that has toppled is not placed, where orientation is asked for") {
-  base::SourceFiles files;
-  base::DiagnosticSink sink;
-  const auto scenario =
-      load_scenario(PARALLAX_SOURCE_DIR "/scenarios/kitchen/plan2.yaml", files, sink);
-  REQUIRE(scenario.has_value());
-  const FluentBinding* strict = scenario->mapping->find("ItemAt");
+  const Scenario scenario = scenario_of("kitchen/plan2.yaml");
+  const FluentBinding* strict = scenario.mapping->find("ItemAt");
   REQUIRE(strict != nullptr);
   FluentBinding lax = *strict;
   std::get<InsideBinding>(lax.condition).upright.reset();
   const auto reading = [&](const FluentBinding& binding, const char* fluent, const State& state) {
-    return binding.read(ground_fluent(fluent), state, scenario->mapping->regions(), nullptr);
+    return binding.read(ground_fluent(fluent), state, scenario.mapping->regions(), nullptr);
   };
 
   // A carton on a narrow foot, its weight beside it: it topples by itself, to the left.
-  WorldSpec spec = scenario->world;
+  WorldSpec spec = scenario.world;
   BodySpec& milk = body_of(spec, "milk1");
   milk.shapes = {BodyShape{{0.06, 0.02, 0.10}, {0.0, 0.0, -0.05}},
                  BodyShape{{0.06, 0.08, 0.06}, {0.0, 0.04, 0.03}}};

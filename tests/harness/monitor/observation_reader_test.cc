@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "harness/config/scenario.h"
+#include "tests/harness/config/scenario_world.h"
 
 namespace parallax::test {
 namespace {
@@ -47,14 +47,7 @@ std::vector<GroundFluent> kitchen_fluents() {
   return out;
 }
 
-StateMapping kitchen_mapping() {
-  base::SourceFiles files;
-  base::DiagnosticSink sink;
-  const auto scenario =
-      harness::load_scenario(PARALLAX_SOURCE_DIR "/scenarios/kitchen/plan2.yaml", files, sink);
-  REQUIRE(scenario.has_value());
-  return *scenario->mapping;
-}
+StateMapping kitchen_mapping() { return *harness::scenario_of("kitchen/plan2.yaml").mapping; }
 
 /// A value of the kind, near where regions begin and end as often as not.
 Value random_value(ObservationReader::Kind kind, const std::string& name,

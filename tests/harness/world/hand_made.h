@@ -28,6 +28,16 @@ inline WorldSpec world_of(std::vector<BodySpec> bodies) {
   return spec;
 }
 
+inline BodySpec& body_of(WorldSpec& spec, std::string_view name) {
+  return *std::find_if(spec.bodies.begin(), spec.bodies.end(),
+                       [&](const BodySpec& body) { return body.name == name; });
+}
+
+inline JointSpec& joint_of(WorldSpec& spec, std::string_view name) {
+  return *std::find_if(spec.joints.begin(), spec.joints.end(),
+                       [&](const JointSpec& joint) { return joint.name == name; });
+}
+
 inline BodyMask mask_of(const WorldLayout& layout, std::initializer_list<std::string_view> names) {
   BodyMask mask(layout.bodies.size(), false);
   for (const std::string_view name : names) mask[layout.find_body(name)->index()] = true;
