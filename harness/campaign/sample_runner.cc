@@ -171,13 +171,7 @@ class ValueChecker {
           argument == nullptr ? std::string("is none that it takes") : fault_of(*argument, value);
       if (!fault.empty()) return report(name, fault);
     }
-    if (const auto fault = wrong_together(controller, call.arguments)) {
-      return report(fault->name, fault->text);
-    }
-    if (const auto fault = wrong_effort(controller, call.arguments, world_, layout_)) {
-      return report(fault->name, fault->text);
-    }
-    if (const auto fault = wrong_tolerance(controller, call.arguments, layout_)) {
+    if (const auto fault = wrong_call(controller, call.arguments, world_, layout_)) {
       report(fault->name, fault->text);
     }
   }

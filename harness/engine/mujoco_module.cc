@@ -1,10 +1,9 @@
 #include "harness/engine/mujoco_module.h"
 
-#include <dlfcn.h>
-
 #include <variant>
 
 #include "compiler/base/contract.h"
+#include "compiler/base/loaded_module.h"
 
 namespace parallax::harness {
 
@@ -12,19 +11,9 @@ namespace parallax::harness {
 
 namespace {
 
-/// Beside the program, as its run path says, or where it is installed. It stays loaded.
 MakeMujocoWorld* loaded_maker() {
-  static MakeMujocoWorld* const kMaker = []() -> MakeMujocoWorld* {
-    for (const auto& file :
-         {std::string(kMujocoModule), std::string(PARALLAX_MODULES) + "/" + kMujocoModule}) {
-      void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-      if (module == nullptr) continue;
-      if (void* maker = ::dlsym(module, kMujocoMaker)) {
-        return reinterpret_cast<MakeMujocoWorld*>(maker);
-      }
-    }
-    return nullptr;
-  }();
+  static auto* const kMaker = reinterpret_cast<MakeMujocoWorld*>(
+      base::symbol_of_module(kMujocoModule, PARALLAX_MODULES, kMujocoMaker));
   return kMaker;
 }
 

@@ -41,6 +41,7 @@ RestingJoints::RestingJoints(OdeWorld::Engine& engine)
                            : joint.kind == RobotJoint::Kind::kSlider ? by_slider_
                                                                      : by_hinge_;
     by[joint.index] = static_cast<int>(i);
+    has_chain_ = has_chain_ || joint.in_chain;
   }
   calm_steps_needed_ = std::max<std::int64_t>(1, std::llround(kCalm_s / engine.solver.timestep_s));
 }
@@ -111,6 +112,7 @@ bool RestingJoints::is_overloaded(const RobotJoint& joint, const Watch& watch) c
 
 void RestingJoints::find_struck() {
   struck_.assign(engine_.links.size(), false);
+  if (!has_chain_) return;
   for (const NewContact& contact : engine_.new_contacts) {
     Eigen::Vector3d apart = Eigen::Vector3d::Zero();
     const auto &one = info_of(contact.a).link, &other = info_of(contact.b).link;
@@ -125,7 +127,9 @@ void RestingJoints::find_struck() {
 /// By joint of a chain: is something struck that it moves, or hangs at?
 std::vector<bool> RestingJoints::struck_joints() const {
   const std::vector<RobotJoint>& joints = hosts_.joints();
-  std::vector<bool> all(joints.size(), false), below = struck_, above = struck_;
+  std::vector<bool> all(joints.size(), false);
+  if (!has_chain_) return all;
+  std::vector<bool> below = struck_, above = struck_;
   for (std::size_t i = joints.size(); i-- > 0;) {  // from the hands up
     if (joints[i].parent && below[joints[i].child]) below[*joints[i].parent] = true;
   }

@@ -58,6 +58,7 @@ class RestingJoints {
 
   OdeWorld::Engine& engine_;
   Hosts hosts_;
+  bool has_chain_ = false;
   std::vector<bool> struck_;                           // by link, in this step
   std::vector<Watch> watches_;                         // by joint of the hosts
   std::vector<int> by_slider_, by_hinge_, by_gantry_;  // index of a joint; -1: not of the robot

@@ -1,12 +1,12 @@
 #include "harness/import/mesh_module.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <cstring>
 #include <string_view>
 #include <utility>
 
+#include "compiler/base/loaded_module.h"
 #include "harness/import/limited_child.h"
 
 namespace parallax::harness {
@@ -14,18 +14,11 @@ namespace {
 
 constexpr std::size_t kMostAnswer = 1 << 16;
 
-/// Beside the program, as its run path says, or where it is installed. It stays loaded.
 const MeshFunctions* functions() {
   static const MeshFunctions* const kLoaded = []() -> const MeshFunctions* {
-    const std::string installed = std::string(PARALLAX_MODULES) + "/" + kMeshModule;
-    for (const auto& file : {std::string(kMeshModule), installed}) {
-      void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-      if (module == nullptr) continue;
-      if (void* get = ::dlsym(module, kMeshFunctions)) {
-        return reinterpret_cast<GetMeshFunctions*>(get)(PARALLAX_IMPORT_VERSION);
-      }
-    }
-    return nullptr;
+    void* const get = base::symbol_of_module(kMeshModule, PARALLAX_MODULES, kMeshFunctions);
+    return get == nullptr ? nullptr
+                          : reinterpret_cast<GetMeshFunctions*>(get)(PARALLAX_IMPORT_VERSION);
   }();
   return kLoaded;
 }

@@ -1,9 +1,9 @@
 #include "harness/import/mjcf_module.h"
 
-#include <dlfcn.h>
-
 #include <utility>
 
+#include "compiler/base/contract.h"
+#include "compiler/base/loaded_module.h"
 #include "harness/import/import.h"
 #include "harness/import/limited_child.h"
 
@@ -12,17 +12,9 @@ namespace {
 
 #ifdef PARALLAX_HAS_MJCF
 
-/// Beside the program, as its run path says, or where it is installed. It stays loaded.
 ReadMjcf* loaded_mjcf_reader() {
-  static ReadMjcf* const kReader = []() -> ReadMjcf* {
-    for (const auto& file :
-         {std::string(kMjcfModule), std::string(PARALLAX_MODULES) + "/" + kMjcfModule}) {
-      void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-      if (module == nullptr) continue;
-      if (void* reader = ::dlsym(module, kMjcfReader)) return reinterpret_cast<ReadMjcf*>(reader);
-    }
-    return nullptr;
-  }();
+  static auto* const kReader = reinterpret_cast<ReadMjcf*>(
+      base::symbol_of_module(kMjcfModule, PARALLAX_MODULES, kMjcfReader));
   return kReader;
 }
 
@@ -44,7 +36,7 @@ bool reads_mjcf() { return loaded_mjcf_reader() != nullptr; }
 
 MjcfModel read_mjcf(const std::vector<MjcfFile>& files) {
   ReadMjcf* const read = loaded_mjcf_reader();
-  if (read == nullptr) return no_model("the module that reads MJCF is not there");
+  PARALLAX_REQUIRE(read != nullptr, "reads_mjcf()");
   const auto work = [&] {
     MjcfModel model;
     if (!read(PARALLAX_IMPORT_VERSION, files, model)) {

@@ -1,8 +1,6 @@
 #include "harness/import/sdf_module.h"
 
-#include <dlfcn.h>
-
-#include <string>
+#include "compiler/base/loaded_module.h"
 
 namespace parallax::harness {
 
@@ -10,18 +8,9 @@ namespace parallax::harness {
 
 namespace {
 
-/// Beside the program, as its run path says, or where it is installed. It stays loaded: the library
-/// does not survive being taken away.
 ReadSdf* loaded_reader() {
-  static ReadSdf* const kReader = []() -> ReadSdf* {
-    for (const auto& file :
-         {std::string(kSdfModule), std::string(PARALLAX_MODULES) + "/" + kSdfModule}) {
-      void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-      if (module == nullptr) continue;
-      if (void* reader = ::dlsym(module, kSdfReader)) return reinterpret_cast<ReadSdf*>(reader);
-    }
-    return nullptr;
-  }();
+  static auto* const kReader =
+      reinterpret_cast<ReadSdf*>(base::symbol_of_module(kSdfModule, PARALLAX_MODULES, kSdfReader));
   return kReader;
 }
 

@@ -200,6 +200,24 @@ void MobileController::add_opening(std::function<double()> opening_m) {
       [this] { return arm().finger_at_rest(); });
 }
 
+void MobileController::add_handle_squeeze(const HandleSpec& handle) {
+  add_squeeze(number("effort_n"), number("hold_s"), [this, width_m = handle.width_m] {
+    return arm().opening_m() <= width_m + 2.0 * number("clearance_m") + 0.002;
+  });
+}
+
+Eigen::Vector3d MobileController::tool_beside(const Eigen::Vector3d& p_W, double width_m,
+                                              double clearance_m, double wrist_rad) const {
+  return p_W -
+         arm().pad_line(wrist_rad) * (0.5 * arm().spec().opening_m - 0.5 * width_m - clearance_m);
+}
+
+void MobileController::refuse_way(const WayFault& fault, const std::string& where) {
+  State margins;
+  if (fault.hit && fault.hit->clearance_m) margins["clearance"] = *fault.hit->clearance_m;
+  refuse_with(kManipulationUnreachable, where + " " + fault.text("would meet"), std::move(margins));
+}
+
 void MobileController::add_squeeze(double force_n, double hold_s, std::function<bool()> gripped) {
   add(
       "closing",

@@ -52,9 +52,17 @@ class MobileController : public PhasedController {
   void add_tool_path(std::string_view name, std::function<Eigen::Vector3d()> target);
   void add_wrist(double yaw_rad);  // against the robot's heading
   void add_opening(std::function<double()> opening_m);
+  /// Closes on a handle, which gives way little: a time, not a touch, ends it.
+  void add_handle_squeeze(const HandleSpec& handle);
   /// Closes with `force_n` until `gripped` has been true for `hold_s`.
   void add_squeeze(double force_n, double hold_s, std::function<bool()> gripped);
 
+  /// Of the tool, so that the near pad is to pass what is `width_m` wide at the clearance; the far
+  /// one closes up to it.
+  Eigen::Vector3d tool_beside(const Eigen::Vector3d& p_W, double width_m, double clearance_m,
+                              double wrist_rad) const;
+  /// `where`: "at the handle".
+  void refuse_way(const WayFault& fault, const std::string& where);
   static Outcome failed(std::string_view condition, const std::string& text, State margins = {});
   void refuse_with(std::string_view condition, const std::string& text, State margins = {});
 

@@ -68,9 +68,7 @@ class MoveDoor final : public MobileController {
   /// The hand at the handle as the door stands; how its wrist is turned then.
   double aim_at_handle() {
     const double wrist = wrapped(handle_.wrist_rad + swung_rad() - robot().base().pose().yaw_rad);
-    grip_ = handle_in_world() -
-            arm().pad_line(wrist) *
-                (0.5 * arm().spec().opening_m - 0.5 * handle_.width_m - number("clearance_m"));
+    grip_ = tool_beside(handle_in_world(), handle_.width_m, number("clearance_m"), wrist);
     return wrist;
   }
 
@@ -103,11 +101,8 @@ class MoveDoor final : public MobileController {
     slow.max_speed_m_s = number("approach_speed_m_s");
     add_tool_move(
         "approaching", [this] { return grip_; }, slow);
-    // The pads close on a bar that gives way little: a time, not a touch, ends it.
     if (pulls) {
-      add_squeeze(number("effort_n"), number("hold_s"), [this] {
-        return arm().opening_m() <= handle_.width_m + 2.0 * number("clearance_m") + 0.002;
-      });
+      add_handle_squeeze(handle_);
       add_step([this] { check_hold(); });
     }
     add_turning();
@@ -164,10 +159,7 @@ class MoveDoor final : public MobileController {
     if (!fault) fault = arm_ways(std::nullopt, kTouchingDoor_m).along(standoff_, grip_);
     if (!fault) fault = ways.round(grip_, axis(), arc_rad(), leaf_);
     if (!fault) return;
-    State margins;
-    if (fault->hit && fault->hit->clearance_m) margins["clearance"] = *fault->hit->clearance_m;
-    refuse_with(kManipulationUnreachable,
-                fmt::format("at the handle {}", fault->text("would meet")), std::move(margins));
+    refuse_way(*fault, "at the handle");
   }
 
   /// Pads that have closed on air, above the bar or beside it, lead nothing.

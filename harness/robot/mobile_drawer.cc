@@ -60,10 +60,7 @@ class MoveDrawer : public MobileController {
   void check_way_in(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
     const auto fault = arm_ways(child_, 0.0).along(from, to);
     if (!fault) return;
-    State margins;
-    if (fault->hit && fault->hit->clearance_m) margins["clearance"] = *fault->hit->clearance_m;
-    refuse_with(kManipulationUnreachable,
-                fmt::format("at the handle {}", fault->text("would meet")), std::move(margins));
+    refuse_way(*fault, "at the handle");
   }
 
  private:
@@ -96,10 +93,8 @@ class OpenDrawer final : public MoveDrawer {
  private:
   void plan() {
     const double wrist = wrapped(handle().wrist_rad - robot().base().pose().yaw_rad);
-    const double clearance_m = number("clearance_m");
     const Eigen::Vector3d grip =
-        handle_in_world() - arm().pad_line(wrist) * (0.5 * arm().spec().opening_m -
-                                                     0.5 * handle().width_m - clearance_m);
+        tool_beside(handle_in_world(), handle().width_m, number("clearance_m"), wrist);
     if (!require_way(grip, wrist)) return;
     const Eigen::Vector3d back = -number("standoff_m") * handle().approach.normalized();
     const Eigen::Vector3d standoff = grip + back;
@@ -111,10 +106,7 @@ class OpenDrawer final : public MoveDrawer {
     add_step([this, standoff, grip] { check_way_in(standoff, grip); });
     add_tool_move(
         "approaching", [grip] { return grip; }, slow);
-    // The pads close on a bar that cannot give way: a time, not a touch, ends it.
-    add_squeeze(number("effort_n"), number("hold_s"), [this] {
-      return arm().opening_m() <= handle().width_m + 2.0 * number("clearance_m") + 0.002;
-    });
+    add_handle_squeeze(handle());
     add_moving(travel(), true, back);
   }
 };

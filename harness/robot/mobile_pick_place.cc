@@ -55,8 +55,7 @@ class PickUp final : public MobileController {
 
   /// Of the tool: the near pad passes at the clearance; the far one closes up to it.
   Eigen::Vector3d target_for(const Eigen::Vector3d& grasp_W, double wrist) const {
-    return grasp_W - arm().pad_line(wrist) *
-                         (0.5 * arm().spec().opening_m - 0.5 * grasp_.width_m - clearance());
+    return tool_beside(grasp_W, grasp_.width_m, clearance(), wrist);
   }
 
   /// Of each pad before it closes; no more than the gripper opens.
@@ -113,11 +112,7 @@ class PickUp final : public MobileController {
     auto fault = ways.along(standoff, target_);
     if (!fault) fault = ways.along(target_, target_ + number("lift_m") * Eigen::Vector3d::UnitZ());
     if (!fault) return;
-    State margins;
-    if (fault->hit && fault->hit->clearance_m) margins["clearance"] = *fault->hit->clearance_m;
-    refuse_with(kManipulationUnreachable,
-                fmt::format("at `{}` {}", name_of(object_), fault->text("would meet")),
-                std::move(margins));
+    refuse_way(*fault, fmt::format("at `{}`", name_of(object_)));
   }
 
   Outcome judge(std::string_view overdue) override {

@@ -226,6 +226,13 @@ std::optional<ArgumentFault> wrong_tolerance(const ControllerSpec& spec, const S
                            quoted(*name), way, unit, tolerance->fallback, unit, key)};
 }
 
+std::optional<ArgumentFault> wrong_call(const ControllerSpec& spec, const State& given,
+                                        const WorldSpec& world, const WorldLayout& layout) {
+  if (auto fault = wrong_together(spec, given)) return fault;
+  if (auto fault = wrong_effort(spec, given, world, layout)) return fault;
+  return wrong_tolerance(spec, given, layout);
+}
+
 std::vector<std::string> names_for(const ArgumentSpec& argument, const WorldSpec& world,
                                    const WorldLayout& layout) {
   std::vector<std::string> names;
@@ -269,13 +276,7 @@ std::variant<Arguments, std::string> Arguments::check(const ControllerSpec& spec
     if (!fault.empty()) return "argument " + quoted(name) + " " + fault;
     arguments.numbers_.emplace(name, *number);
   }
-  if (const auto fault = wrong_together(spec, given)) {
-    return "argument " + quoted(fault->name) + " " + fault->text;
-  }
-  if (const auto fault = wrong_effort(spec, given, world, layout)) {
-    return "argument " + quoted(fault->name) + " " + fault->text;
-  }
-  if (const auto fault = wrong_tolerance(spec, given, layout)) {
+  if (const auto fault = wrong_call(spec, given, world, layout)) {
     return "argument " + quoted(fault->name) + " " + fault->text;
   }
   for (const ArgumentSpec& one : spec.arguments) {

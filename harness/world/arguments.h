@@ -110,6 +110,9 @@ std::optional<ArgumentFault> wrong_effort(const ControllerSpec& spec, const Stat
 /// of its way on, it would be where it is to be before anything has moved it.
 std::optional<ArgumentFault> wrong_tolerance(const ControllerSpec& spec, const State& given,
                                              const WorldLayout& layout);
+/// The first of these three.
+std::optional<ArgumentFault> wrong_call(const ControllerSpec& spec, const State& given,
+                                        const WorldSpec& world, const WorldLayout& layout);
 
 /// The names that would do, sorted.
 std::vector<std::string> names_for(const ArgumentSpec& argument, const WorldSpec& world,
