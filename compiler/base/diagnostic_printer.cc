@@ -17,19 +17,13 @@ namespace {
 
 constexpr std::size_t kExcerptColumns = 160;
 
-bool is_bidirectional_control(char32_t c) {
-  return (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069) || c == 0x200E ||
-         c == 0x200F || c == 0x061C || c == 0xFEFF;
-}
-
 /// Appends `text`, one column per code point, and returns nothing wider than the excerpt.
 std::string excerpt(std::string_view line) {
   std::string out;
   std::size_t columns = 0;
   while (!line.empty() && columns < kExcerptColumns) {
     const auto point = front_code_point(line);
-    if (!point.valid || point.value < 0x20 || point.value == 0x7F ||
-        is_bidirectional_control(point.value)) {
+    if (!point.valid || steers_display(point.value)) {
       out += point.valid && point.value == '\t' ? ' ' : '?';
     } else {
       out.append(line.substr(0, point.length));
@@ -198,22 +192,6 @@ Json result(const Diagnostic& d, const SourceFiles& files, std::size_t rule_inde
 }
 
 }  // namespace
-
-std::string printable(std::string_view text) {
-  std::string out;
-  while (!text.empty()) {
-    const auto point = front_code_point(text);
-    if (!point.valid) {
-      out += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
-    } else if (point.value < 0x20 || point.value == 0x7F || is_bidirectional_control(point.value)) {
-      out += fmt::format("\\u{:04x}", static_cast<std::uint32_t>(point.value));
-    } else {
-      out.append(text.substr(0, point.length));
-    }
-    text.remove_prefix(point.valid ? point.length : 1);
-  }
-  return out;
-}
 
 std::string_view help_of(const Diagnostic& d) {
   return d.help.empty() ? info(d.code).help : std::string_view(d.help);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
+#include "compiler/base/shown_text.h"
 
 namespace parallax::base {
 
@@ -24,9 +25,6 @@ std::string to_text(const Diagnostic& diagnostic, const SourceFiles& files,
 /// A JSON array of objects with the same fields: path, line, column, end_line, end_column,
 /// severity, code, message, notes, fix, help. One line, no trailing newline.
 std::string to_json(const std::vector<Diagnostic>& diagnostics, const SourceFiles& files);
-
-/// Replaces control, invalid and bidirectional-control bytes by visible escapes.
-std::string printable(std::string_view text);
 
 /// The diagnostics as a SARIF 2.1.0 log of one run (OASIS, 2020): one rule for each code that
 /// occurs, one result for each diagnostic with its region, its notes as related locations and its

@@ -164,8 +164,9 @@ TextPieces one_piece(std::string_view text) {
 }  // namespace
 
 Status write_file_atomically(const std::filesystem::path& path, std::string_view text,
-                             DiagnosticSink& sink) {
-  return write_pieces_atomically(path, one_piece(text), sink);
+                             DiagnosticSink& sink, TextForm form) {
+  if (form == TextForm::kExact) return write_pieces_atomically(path, one_piece(text), sink);
+  return write_pieces_atomically(path, one_piece(shown(text, form)), sink);
 }
 
 Status check_output(const std::filesystem::path& path, const SourceFiles& files,
@@ -180,8 +181,9 @@ Status check_output(const std::filesystem::path& path, const SourceFiles& files,
 }
 
 Status write_output(const std::filesystem::path& path, std::string_view text,
-                    const SourceFiles& files, DiagnosticSink& sink) {
-  return write_output(path, one_piece(text), files, sink);
+                    const SourceFiles& files, DiagnosticSink& sink, TextForm form) {
+  if (!check_output(path, files, sink)) return sink.already_reported();
+  return write_file_atomically(path, text, sink, form);
 }
 
 Status write_output(const std::filesystem::path& path, const TextPieces& pieces,

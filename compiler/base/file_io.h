@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "compiler/base/diagnostic.h"
+#include "compiler/base/shown_text.h"
 
 namespace parallax::base {
 
@@ -29,9 +30,10 @@ Result<FileId> register_text(std::string name, std::string text, SourceFiles& fi
                              DiagnosticSink& sink);
 
 /// Writes to a temporary neighbour of a new name, syncs, renames. Reports kFileNotWritable, and
-/// kNotARegularFile for an existing folder, device or pipe.
+/// kNotARegularFile for an existing folder, device or pipe. Files that people open have another
+/// form than kExact; tests/tools/output_gate_test.cc knows who writes exact ones.
 Status write_file_atomically(const std::filesystem::path& path, std::string_view text,
-                             DiagnosticSink& sink);
+                             DiagnosticSink& sink, TextForm form = TextForm::kExact);
 
 /// Reports kOutputIsInput if writing `path` would replace a file that was read into `files`.
 Status check_output(const std::filesystem::path& path, const SourceFiles& files,
@@ -39,11 +41,12 @@ Status check_output(const std::filesystem::path& path, const SourceFiles& files,
 
 /// write_file_atomically for what a command was asked to write, after check_output.
 Status write_output(const std::filesystem::path& path, std::string_view text,
-                    const SourceFiles& files, DiagnosticSink& sink);
+                    const SourceFiles& files, DiagnosticSink& sink,
+                    TextForm form = TextForm::kLines);
 
 /// Hands a text over piece by piece, as it is made.
 using TextPieces = std::function<void(const std::function<void(std::string_view)>&)>;
-/// The same for a text that is never held as a whole.
+/// The same for a text that is never held as a whole; it is written byte by byte.
 Status write_output(const std::filesystem::path& path, const TextPieces& pieces,
                     const SourceFiles& files, DiagnosticSink& sink);
 

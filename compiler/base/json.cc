@@ -1,5 +1,9 @@
 #include "compiler/base/json.h"
 
+#include <algorithm>
+
+#include "compiler/base/shown_text.h"
+
 template class nlohmann::basic_json<>;
 template class nlohmann::basic_json<nlohmann::ordered_map>;
 
@@ -8,7 +12,11 @@ namespace {
 
 template <typename Json>
 std::string text_of(const Json& json, int indent) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+  auto text = json.dump(indent, ' ', false, Json::error_handler_t::replace);
+  // The library escapes C0 only. Whatever else steers a display stands in a string, too.
+  const bool is_plain = std::all_of(text.begin(), text.end(),
+                                    [](char c) { return static_cast<unsigned char>(c) < 0x7F; });
+  return is_plain ? text : shown_markup(text);
 }
 
 template <typename Json>

@@ -14,7 +14,8 @@ extern template class nlohmann::basic_json<nlohmann::ordered_map>;
 namespace parallax::base {
 
 /// A document as text; on one line, or with so many blanks for each level. Texts may hold any bytes
-/// (names of files do): what is no UTF-8 becomes U+FFFD, where nlohmann would throw.
+/// (names of files do): what is no UTF-8 becomes U+FFFD, where nlohmann would throw. Characters
+/// that steer a display are escaped (shown_text.h), so that the text can be shown as it is.
 std::string json_text(const nlohmann::json& json, int indent = -1);
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
 

@@ -2,15 +2,18 @@
 
 #include <algorithm>
 
+#include "compiler/base/ascii.h"
+#include "compiler/base/shown_text.h"
+
 namespace parallax::base {
 
 std::string markdown_text(std::string_view text) {
+  // A table's cell ends with its line.
+  std::string line(text);
+  std::replace_if(line.begin(), line.end(), is_space, ' ');
   std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7F) {
-      out += ' ';
-    } else if (c == '<') {
+  for (const char c : printable(line)) {
+    if (c == '<') {
       out += "&lt;";
     } else if (c == '>') {
       out += "&gt;";
@@ -27,13 +30,11 @@ std::string markdown_text(std::string_view text) {
 }
 
 std::string markdown_block(std::string_view text) {
-  std::string shown;
+  auto shown = shown_lines(text);
   std::size_t ticks = 0, longest = 2;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
+  for (const char c : shown) {
     ticks = c == '`' ? ticks + 1 : 0;
     longest = std::max(longest, ticks);
-    shown += (byte < 0x20 && c != '\n') || byte == 0x7F ? ' ' : c;
   }
   if (!shown.ends_with('\n')) shown += '\n';
   const std::string fence(longest + 1, '`');

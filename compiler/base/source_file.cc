@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "compiler/base/contract.h"
+#include "compiler/base/shown_text.h"
 #include "compiler/base/utf8.h"
 
 namespace parallax::base {
@@ -78,7 +79,7 @@ const SourceFile& SourceFiles::operator[](FileId id) const {
 
 std::string SourceFiles::place(const SourceRange& range) const {
   const auto& file = (*this)[range.file];
-  return fmt::format("{}:{}", file.name(), file.position(range.begin).line);
+  return fmt::format("{}:{}", printable(file.name()), file.position(range.begin).line);
 }
 
 }  // namespace parallax::base

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 
+#include "compiler/base/shown_text.h"
 #include "compiler/base/utf8.h"
 
 namespace parallax::base {
@@ -46,6 +48,9 @@ std::string xml_escaped(std::string_view text) {
     const auto length = character_length(text);
     if (text.front() == '\r') {
       out += "&#13;";
+    } else if (const auto point = front_code_point(text);
+               point.valid && point.value >= 0x7F && steers_display(point.value)) {
+      out += fmt::format("\\u{:04X}", static_cast<std::uint32_t>(point.value));
     } else if (length == 0) {
       out += fmt::format("\\x{:02X}", static_cast<unsigned>(static_cast<unsigned char>(text[0])));
     } else if (const auto known = entity(text.front()); !known.empty()) {

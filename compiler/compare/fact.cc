@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "compiler/base/ascii.h"
+#include "compiler/base/shown_text.h"
 #include "compiler/base/utf8.h"
 
 namespace parallax::compiler {
@@ -120,7 +121,8 @@ class Matcher {
 }  // namespace
 
 std::string to_string(const FactPlace& place) {
-  return place.line == 0 ? place.file : place.file + ":" + std::to_string(place.line);
+  const auto file = base::printable(place.file);
+  return place.line == 0 ? file : file + ":" + std::to_string(place.line);
 }
 
 std::vector<std::string_view> words_of(std::string_view text) {

@@ -9,6 +9,8 @@
 #include <tuple>
 #include <variant>
 
+#include "compiler/base/shown_text.h"
+
 namespace parallax::compiler {
 namespace {
 
@@ -39,7 +41,7 @@ std::string terminal_text(const PlanTerminal& terminal, const base::SourceFiles&
 /// A label in double quotes for Graphviz.
 std::string dot_text(std::string_view text) {
   std::string out = "\"";
-  for (const char c : text) {
+  for (const char c : base::printable(text)) {
     if (c == '"' || c == '\\') out += '\\';
     out += c;
   }

@@ -165,7 +165,7 @@ SampleRecord record_of(const Json& object) {
   record.rejected = count_of(object, "rejected", 0);
   if (object.contains("redrawn")) record.redrawn = count_of(object, "redrawn", 1);
   record.retries = count_of(object, "retries", 0);
-  record.reason = get<std::string>(object, "reason");
+  record.reason = recorded_words(get<std::string>(object, "reason"));
   record.initial = state_of(field(object, "initial"), "initial");
   for (const auto& state : list(object, "observations")) {
     record.observations.push_back(state_of(state, "observations"));
@@ -173,7 +173,7 @@ SampleRecord record_of(const Json& object) {
   for (const auto& outcome : list(object, "outcomes")) {
     record.outcomes.push_back(
         {word_of(outcome, "status", {SimStatus::kOk, SimStatus::kFailed, SimStatus::kTruncated}),
-         get<std::string>(outcome, "reason"), duration_of(outcome, "sim_time_s"),
+         recorded_words(get<std::string>(outcome, "reason")), duration_of(outcome, "sim_time_s"),
          outcome.contains("object") ? get<std::string>(outcome, "object") : std::string(),
          outcome.contains("margins") ? state_of(field(outcome, "margins"), "margins") : State()});
   }

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <bit>
 
+#include "compiler/base/ascii.h"
+#include "compiler/base/shown_text.h"
+#include "compiler/base/utf8.h"
 #include "harness/campaign/sample_row.h"
 
 namespace parallax::harness {
@@ -48,6 +51,12 @@ std::optional<RecordDifference> differing_state(const State& a, const State& b,
 }
 
 }  // namespace
+
+std::string recorded_words(std::string_view words) {
+  auto line = base::with_invalid_utf8_replaced(words);  // the journal holds text
+  std::replace_if(line.begin(), line.end(), base::is_space, ' ');
+  return base::printable(line);
+}
 
 std::string reason_word(const ActionOutcome& outcome) {
   if (outcome.status == SimStatus::kOk) return "failed";

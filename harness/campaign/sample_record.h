@@ -34,6 +34,10 @@ struct ActionOutcome {
   friend bool operator==(const ActionOutcome&, const ActionOutcome&) = default;
 };
 
+/// A simulator's words as records hold them, one line without what steers a display: they become
+/// part of many sentences. Applied to its own result it changes nothing.
+std::string recorded_words(std::string_view words);
+
 /// The word by which a binding table knows why an action failed: what stands in front of the first
 /// colon of the reason; without a reason the status, as for an action that its time limit ended;
 /// "failed" where the simulator says nothing of a failure and the formula of success does not hold.

@@ -46,7 +46,7 @@ class Attempt {
         return ended(outcome.status, outcome.reason);
       }
       record_.outcomes.push_back(
-          {outcome.status, base::with_invalid_utf8_replaced(outcome.reason), outcome.sim_time_s,
+          {outcome.status, recorded_words(outcome.reason), outcome.sim_time_s,
            record_.path ? base::with_invalid_utf8_replaced(outcome.object) : std::string(),
            outcome.margins});
       if (const auto lost = observe()) return lost;
@@ -68,9 +68,9 @@ class Attempt {
     });
   }
 
-  /// A process may write any bytes to its standard error; the journal holds text.
+  /// A process may write any bytes to its standard error.
   SimStatus ended(SimStatus status, const std::string& reason) {
-    record_.reason = base::with_invalid_utf8_replaced(reason);
+    record_.reason = recorded_words(reason);
     return status;
   }
 

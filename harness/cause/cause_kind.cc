@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "compiler/base/shown_text.h"
+
 namespace parallax::harness {
 namespace {
 
@@ -145,7 +147,8 @@ std::string rule_text(const std::vector<Border>& borders,
                       const std::vector<std::string>& parameters) {
   std::string out;
   for (const auto& border : borders) {
-    out += fmt::format("{}`{}` {} {}", out.empty() ? "" : " and ", parameters[border.parameter],
+    out += fmt::format("{}`{}` {} {}", out.empty() ? "" : " and ",
+                       base::printable(parameters[border.parameter]),
                        border.above ? ">" : "<=", border.value);
   }
   return out;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "compiler/base/utf8.h"
+#include "harness/simulator/error_tail.h"
 #include "harness/simulator/worker.h"
 
 namespace parallax::harness {
@@ -88,9 +89,7 @@ std::variant<ReplyBody, std::string> WorkerLink::ask(RequestBody body) {
 std::string WorkerLink::lose(std::string reason) {
   if (!child_.start_error().empty()) return reason;
   reason += fmt::format(" ({})", child_.end(from_now(kEndGraceS)));
-  const auto tail = child_.error_tail();
-  if (!tail.empty()) reason += "; the end of its standard error:\n" + tail;
-  return reason;
+  return reason + error_tail_words(child_.error_tail());
 }
 
 }  // namespace parallax::harness

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 
@@ -89,6 +88,9 @@ std::uint64_t done_after(std::uint64_t done, const AskedRequest& asked) {
   return is_of_a_run(asked.method) ? base::fnv1a64(asked.text, done) : done;
 }
 
+/// On standard error, as a simulator does; its loss loses the text.
+void tell(std::string_view text) { (void)base::write_all(STDERR_FILENO, base::shown_lines(text)); }
+
 }  // namespace
 
 int record_adapter(const std::vector<std::string>& command, int in_fd, int out_fd, int record_fd) {
@@ -100,8 +102,8 @@ int record_adapter(const std::vector<std::string>& command, int in_fd, int out_f
   options.ends_with_us = true;
   const auto child = base::spawn(command, options);
   if (child.pid < 0) {
-    fmt::print(stderr, "cannot start `{}`: {}\n", base::command_text(command),
-               std::strerror(child.error));
+    tell(fmt::format("cannot start `{}`: {}\n", base::command_text(command),
+                     std::strerror(child.error)));
     return 127;
   }
   to.read.close();
@@ -199,7 +201,7 @@ int serve_recording(RecordedAdapter& adapter, int in_fd, int out_fd) {
   for (std::string request; requests.next(request);) {
     const auto reply = adapter.answer(request);
     if (!reply) {
-      fmt::print(stderr, "here the recorded simulator ended\n");
+      tell("here the recorded simulator ended\n");
       return 1;
     }
     if (!base::write_all(out_fd, *reply + '\n')) return 1;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "compiler/base/json.h"
+#include "compiler/base/shown_text.h"
 #include "harness/conformance/conformance.h"
 
 namespace parallax::harness {
@@ -56,12 +57,12 @@ std::string_view to_string(Repeatability repeatability) {
 std::string conformance_text(const ConformanceReport& report, const std::string& command) {
   std::string text = command;
   if (!report.info.name.empty()) {
-    text += fmt::format(": {} {}", report.info.name, report.info.version);
+    text += base::printable(fmt::format(": {} {}", report.info.name, report.info.version));
   }
   text += "\n\n";
   for (const auto& check : report.checks) {
     text += fmt::format("  {:<14} {:<9} {}\n", to_string(check.kind), state_of(report, check),
-                        check.said);
+                        base::printable(check.said));
   }
   text += '\n';
   for (const bool is_fault : {true, false}) {
@@ -74,7 +75,7 @@ std::string conformance_text(const ConformanceReport& report, const std::string&
   if (!report.findings.empty()) text += '\n';
   text += "what claims it supports, as measured\n";
   for (const auto& [name, member] : kClaimRows) {
-    text += fmt::format("  {:<23} {}\n", name, report.claims.*member);
+    text += fmt::format("  {:<23} {}\n", name, base::printable(report.claims.*member));
   }
   const auto faults = report.faults();
   text += fmt::format("\n{}, {}{}\n", faults == 0 ? "no fault" : counted(faults, "fault"),

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "harness/simulator/error_tail.h"
+
 namespace parallax::harness {
 namespace {
 
@@ -49,8 +51,7 @@ void ProtocolProbe::lose(std::string why) {
   constexpr double kGraceS = 0.2;
   const auto ending = child_->end(in_seconds(kGraceS));
   trouble_ = std::move(why) + fmt::format(" ({})", ending);
-  const auto tail = child_->error_tail();
-  if (!tail.empty()) trouble_ += "; the end of its standard error:\n" + tail;
+  trouble_ += error_tail_words(child_->error_tail());
   child_.reset();
 }
 

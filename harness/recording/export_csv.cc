@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "compiler/base/shown_text.h"
 #include "harness/recording/export_recording.h"
 #include "harness/recording/marks.h"
 
@@ -9,17 +10,6 @@ namespace parallax::harness {
 namespace {
 
 constexpr std::string_view kMotionCsvHead = "time,body,x,y,z,qw,qx,qy,qz,event\r\n";
-
-/// As RFC 4180 wants a field that has what separates fields.
-std::string csv_field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + '"';
-}
 
 }  // namespace
 
@@ -32,8 +22,8 @@ std::string csv_of(const Recording& recording) {
   const auto mark_to = [&](double time_s) {
     // Half a step of time is no difference.
     for (; marked < marks.size() && marks[marked].time_s < time_s + 0.5 * kFrameTime_s; ++marked) {
-      out +=
-          fmt::format("{:.3f},,,,,,,,,{}\r\n", marks[marked].time_s, csv_field(marks[marked].text));
+      out += fmt::format("{:.3f},,,,,,,,,{}\r\n", marks[marked].time_s,
+                         base::csv_cell(marks[marked].text));
     }
   };
   const auto& bodies = recording.scene.bodies;
@@ -48,7 +38,7 @@ std::string csv_of(const Recording& recording) {
       for (const auto body : with[moving[moved]]) {
         const auto pose = at.pose_of(body);
         out += fmt::format("{:.3f},{},{:.4f},{:.4f},{:.4f},{:.6f},{:.6f},{:.6f},{:.6f},\r\n",
-                           at.time_s(), csv_field(bodies[body].name), pose.p[0], pose.p[1],
+                           at.time_s(), base::csv_cell(bodies[body].name), pose.p[0], pose.p[1],
                            pose.p[2], pose.q[0], pose.q[1], pose.q[2], pose.q[3]);
       }
     }

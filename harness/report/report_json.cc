@@ -305,8 +305,8 @@ std::string campaign_json(const CampaignResult& result, bool with_timing) {
 
 base::Status write_report(const CampaignResult& result, const std::filesystem::path& run_dir,
                           base::DiagnosticSink& sink) {
-  const auto text =
-      base::write_file_atomically(run_dir / "report.txt", campaign_text(result, {}), sink);
+  const auto text = base::write_file_atomically(run_dir / "report.txt", campaign_text(result, {}),
+                                                sink, base::TextForm::kLines);
   const auto json = base::write_file_atomically(run_dir / "report.json",
                                                 text_of(json_of(result, false), 2), sink);
   if (!text || !json) return sink.already_reported();

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "compiler/base/json.h"
+#include "compiler/base/shown_text.h"
 #include "harness/simulator/state_json.h"
-#include "runtime/trace/csv_format.h"
 
 namespace parallax::harness {
 namespace {
@@ -19,7 +19,7 @@ using MarginKey = std::pair<std::size_t, std::string>;  // number of the event, 
 std::string cell(const State& state, const std::string& name) {
   const auto found = state.find(name);
   if (found == state.end()) return {};
-  return runtime::csv_field(std::visit(
+  return base::csv_cell(std::visit(
       [](const auto& value) {
         using Plain = std::decay_t<decltype(value)>;
         if constexpr (std::is_same_v<Plain, std::string>) {
@@ -50,17 +50,16 @@ std::string samples_csv(const std::vector<SampleRow>& rows) {
     }
   }
   std::string out = std::string(kSamplesCsvMark) + "event,cause,reason,sim_time_s";
-  for (const auto& name : variables) out += ',' + runtime::csv_field("start." + name);
+  for (const auto& name : variables) out += ',' + base::csv_cell("start." + name);
   for (const auto& [event, name] : margins) {
-    out += ',' + runtime::csv_field(fmt::format("margin.{}.{}", event, name));
+    out += ',' + base::csv_cell(fmt::format("margin.{}.{}", event, name));
   }
   out += '\n';
   for (const auto& row : rows) {
-    out +=
-        fmt::format("{},{},{},{},{},{},{},{},{},{},{}", row.trace, row.sample, row.seed,
-                    row.drawn ? "drawn" : "chosen", row.rejected, row.retries, row.outcome,
-                    row.event ? std::to_string(*row.event) : std::string(),
-                    runtime::csv_field(row.cause), runtime::csv_field(row.reason), row.sim_time_s);
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{}", row.trace, row.sample, row.seed,
+                       row.drawn ? "drawn" : "chosen", row.rejected, row.retries, row.outcome,
+                       row.event ? std::to_string(*row.event) : std::string(),
+                       base::csv_cell(row.cause), base::csv_cell(row.reason), row.sim_time_s);
     for (const auto& name : variables) out += ',' + cell(row.start, name);
     for (const auto& [event, name] : margins) {
       out += ',';

@@ -16,6 +16,7 @@
 
 #include "compiler/base/contract.h"
 #include "compiler/base/subprocess.h"
+#include "harness/simulator/error_tail.h"
 #include "harness/simulator/process_memory.h"
 #include "harness/simulator/protocol.h"
 
@@ -265,9 +266,7 @@ class ProcessSimulator::Link {
     // tells more than our signal.
     const auto ending = child_.end(after(grace_s));
     reason += fmt::format(" ({})", ending);
-    const auto tail = child_.error_tail();
-    if (!tail.empty()) reason += "; the end of its standard error:\n" + tail;
-    return reason;
+    return reason + error_tail_words(child_.error_tail());
   }
 
   void close(double timeout_s) {

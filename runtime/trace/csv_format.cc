@@ -2,13 +2,15 @@
 
 #include <algorithm>
 
+#include "compiler/base/shown_text.h"
+
 namespace parallax::runtime {
 namespace {
 
 void append_names(const std::vector<SymbolInstances>& symbols, const char* before,
                   const char* after, std::string& row) {
   for (const auto& symbol : symbols) {
-    for (const auto& atom : symbol.atoms) row += ',' + csv_field(before + atom + after);
+    for (const auto& atom : symbol.atoms) row += ',' + base::csv_cell(before + atom + after);
   }
 }
 
@@ -35,16 +37,6 @@ std::size_t count(const std::vector<SymbolInstances>& symbols) {
 }
 
 }  // namespace
-
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + '"';
-}
 
 CsvFormat::CsvFormat(const CompiledModel& model) : vocabulary_(vocabulary_of(model)) {}
 
@@ -78,8 +70,8 @@ std::string CsvFormat::trace(const Trace& trace) {
 std::string CsvFormat::end(const ListEnd& end) {
   const auto columns = count(vocabulary_.fluents) + count(vocabulary_.releasable) +
                        count(vocabulary_.events) + count(vocabulary_.predicates);
-  auto row = csv_field("# " + end.exploration + end.remark + ": " + std::to_string(end.traces) +
-                       (end.traces == 1 ? " trace" : " traces"));
+  auto row = base::csv_cell("# " + end.exploration + end.remark + ": " +
+                            std::to_string(end.traces) + (end.traces == 1 ? " trace" : " traces"));
   return row.append(columns + 1, ',') + "\r\n";
 }
 

@@ -23,7 +23,4 @@ class CsvFormat final : public ListFormat {
   Vocabulary vocabulary_;
 };
 
-/// A field as RFC 4180 asks: quoted where it holds a comma, a quote or a line end.
-std::string csv_field(const std::string& text);
-
 }  // namespace parallax::runtime

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/base/shown_text.h"
 #include "runtime/explain/clause_text.h"
 #include "tools/app/blame.h"
 
@@ -39,7 +40,7 @@ std::string axiom_words(const compiler::Origin& origin) {
 /// "domain.e:9"; empty for what no text says.
 std::string place_of(const compiler::Origin& origin) {
   if (origin.place.file.empty()) return {};
-  return fmt::format("{}:{}", origin.place.file, origin.place.begin.line);
+  return fmt::format("{}:{}", base::printable(origin.place.file), origin.place.begin.line);
 }
 
 std::string in_brackets(const std::string& place) {

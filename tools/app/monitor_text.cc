@@ -29,10 +29,10 @@ std::string value_text(const harness::Value& value) {
 std::string fluent_text(const RefusedFluent& fluent) {
   std::string out = fmt::format(
       "  {}{}", fluent.neither ? "neither so nor so: " : (fluent.observed ? "" : "not "),
-      fluent.fluent);
+      base::printable(fluent.fluent));
   std::vector<std::string> values;
   for (const auto& [name, value] : fluent.variables) {
-    values.push_back(fmt::format("{} = {}", name, value_text(value)));
+    values.push_back(base::printable(fmt::format("{} = {}", name, value_text(value))));
   }
   if (!values.empty()) out += fmt::format("   ({})", fmt::join(values, ", "));
   return out + "\n";
@@ -41,9 +41,10 @@ std::string fluent_text(const RefusedFluent& fluent) {
 std::string place_text(const MonitorResult& result) {
   const auto& place = *result.first;
   if (place.line == 0) {
-    return fmt::format("{}: timepoint {}, t = {:.6g} s", result.log, place.timepoint, place.t);
+    return fmt::format("{}: timepoint {}, t = {:.6g} s", base::printable(result.log),
+                       place.timepoint, place.t);
   }
-  return fmt::format("{}:{}: t = {:.6g} s", result.log, place.line, place.t);
+  return fmt::format("{}:{}: t = {:.6g} s", base::printable(result.log), place.line, place.t);
 }
 
 std::string refusal_text(const MonitorResult& result) {
@@ -155,12 +156,13 @@ std::string monitor_text(const MonitorResult& result) {
                        action.place.t);
   }
   if (result.verdict == MonitorVerdict::kUndecided && !result.first && !result.failed) {
-    out += fmt::format("undecided: {}\n", result.undecided_because);
+    out += fmt::format("undecided: {}\n", base::printable(result.undecided_because));
   }
   if (!result.unreported.empty()) {
-    out += fmt::format("never reported: {}\n", fmt::join(result.unreported, ", "));
+    out += fmt::format("never reported: {}\n",
+                       base::printable(fmt::format("{}", fmt::join(result.unreported, ", "))));
   }
-  for (const auto& hint : result.hints) out += hint + "\n";
+  for (const auto& hint : result.hints) out += base::printable(hint) + "\n";
   return out;
 }
 

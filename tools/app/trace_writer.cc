@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/base/json.h"
+#include "compiler/base/shown_text.h"
 
 namespace parallax::tools {
 namespace {
@@ -68,7 +69,7 @@ std::string TraceWriter::checked_remark() const {
 
 std::string place_text(const compiler::TextPlace& place) {
   if (place.file.empty()) return {};
-  return fmt::format("{}:{}:{}", place.file, place.begin.line, place.begin.column);
+  return fmt::format("{}:{}:{}", base::printable(place.file), place.begin.line, place.begin.column);
 }
 
 std::vector<std::string> open_end_texts(const compiler::CompiledModel& model,

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <set>
@@ -31,21 +30,26 @@ bool Invocation::color_on(int descriptor) const {
   return isatty(descriptor) != 0;
 }
 
+/// A remark goes on in lines that are indented; any other line end is part of a name.
 void Invocation::remark(const std::string& text) const {
-  if (!options_.quiet) write_error(text + '\n');
-}
-
-void write_error(const std::string& text) {
-  std::fwrite(text.data(), 1, text.size(), stderr);
-  std::fflush(stderr);
+  if (options_.quiet) return;
+  std::string lines;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool is_foreign = text[i] == '\n' && text.compare(i, 2, "\n ") != 0;
+    lines += is_foreign ? base::printable("\n") : std::string(1, text[i]);
+  }
+  write_error(lines + '\n');
 }
 
 void Invocation::result(const std::string& text) {
-  if (output_error_ != 0) return;
-  errno = 0;
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  if (written && std::fflush(stdout) == 0) return;
-  output_error_ = errno != 0 ? errno : EIO;
+  keep_result(print(text, {.colors = color_on(STDOUT_FILENO)}));
+}
+
+void Invocation::exact_result(const std::string& text) { keep_result(print_exact(text)); }
+
+void Invocation::keep_result(bool written) {
+  if (written || is_lost_) return;
+  is_lost_ = true;
   before_output_error_ = sink();
   stop_flag().store(true);
 }
@@ -60,8 +64,9 @@ void Invocation::document(std::string json) { document_ = std::move(json); }
 
 /// A reader that has seen enough (head) closes the pipe: that is no error of ours to speak of.
 void Invocation::report_output_error() {
-  if (output_error_ == 0 || output_error_ == EPIPE) return;
-  sink().error_about(codes::kFileNotWritable, "standard output", std::strerror(output_error_));
+  if (!is_lost_ || output_error() == EPIPE) return;
+  sink().error_about(codes::kFileNotWritable, "standard output", std::strerror(output_error()));
+  output_error_is_told();
 }
 
 void Invocation::print_diagnostics(const std::vector<base::Diagnostic>& diagnostics) const {
@@ -78,7 +83,8 @@ void Invocation::print_diagnostics(const std::vector<base::Diagnostic>& diagnost
     const bool is_error = base::info(diagnostic.code).severity == base::Severity::kError;
     if (options_.quiet && !is_error) continue;
     const bool help = diagnostic.fix.empty() && said.insert(base::help_of(diagnostic)).second;
-    write_error(base::to_text(diagnostic, files(), {color_on(STDERR_FILENO), help}));
+    const bool color = color_on(STDERR_FILENO);
+    write_error(base::to_text(diagnostic, files(), {color, help}), {.colors = color});
   }
   const auto rest = [](std::size_t count, const char* what) {
     if (count <= base::DiagnosticSink::kUsualLimit) return;
@@ -105,7 +111,7 @@ void Invocation::write_footprint() {
 
 int Invocation::finish(int code) {
   // What was reported after that is about having been stopped by it.
-  if (output_error_ != 0) sink() = before_output_error_;
+  if (is_lost_) sink() = before_output_error_;
   report_output_error();
   write_footprint();
   const auto diagnostics = sink().sorted();
@@ -118,13 +124,6 @@ int Invocation::finish(int code) {
     result(document_);
   } else if (options_.json && (sink().has_errors() || code != 0)) {
     result(error_document(diagnostics, files()));
-  }
-  // Written last, so looked at last: the document above may be what could not be written.
-  if (output_error_ != 0) {
-    if (diagnostics.empty() && output_error_ != EPIPE) {
-      write_error(fmt::format("parallax: standard output: {}\n", std::strerror(output_error_)));
-    }
-    return code != 0 ? code : 2;
   }
   if (!sink().has_errors()) return code;
   // A command that knows better (a finding, an interruption) keeps its code.

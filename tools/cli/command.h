@@ -10,11 +10,9 @@
 #include "compiler/base/source_file.h"
 #include "tools/app/context.h"
 #include "tools/cli/option_table.h"
+#include "tools/cli/output.h"
 
 namespace parallax::tools {
-
-/// Writes to standard error; a stream that is closed or full loses the text, never the program.
-void write_error(const std::string& text);
 
 /// What every command understands.
 struct CommonOptions {
@@ -43,6 +41,8 @@ class Invocation final : public Context {
   /// The result of the command; standard output holds nothing else.
   /// When it cannot be written the stop flag is raised, and `finish` reports it.
   void result(const std::string& text) override;
+  /// A result that another program reads byte by byte, such as a model.
+  void exact_result(const std::string& text);
   /// The result under --json: one object. What was reported becomes its field `diagnostics` when it
   /// is printed, by finish.
   void document(std::string json) override;
@@ -54,6 +54,7 @@ class Invocation final : public Context {
   int finish(int code);
 
  private:
+  void keep_result(bool written);
   void report_output_error();
   void write_footprint();
   void print_diagnostics(const std::vector<base::Diagnostic>& diagnostics) const;
@@ -61,7 +62,7 @@ class Invocation final : public Context {
   CommonOptions options_;
   std::string document_;
   bool answered_ = false;
-  int output_error_ = 0;  // errno of the first failed write
+  bool is_lost_ = false;  // the result could not be written
   base::DiagnosticSink before_output_error_;
 };
 

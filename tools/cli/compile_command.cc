@@ -95,21 +95,21 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
     compiler::write_artifact(model, {.projection_line = !options.no_projection}, take);
   };
   if (compilation->passes.text) {
-    text = *compilation->passes.text;
+    text = base::shown_lines(*compilation->passes.text);
   } else if (options.emit != "cnf" && !compilation->plan) {
     sink.error_about(
         codes::kUsage, "",
         fmt::format("--emit={} needs a plan (--plan, or a scenario with one)", options.emit));
     return 0;
   } else if (options.emit == "cfg") {
-    text = compiler::dump_text(*compilation->plan, invocation.files());
+    text = base::shown_lines(compiler::dump_text(*compilation->plan, invocation.files()));
   } else if (options.emit != "cnf") {
-    text = compiler::dump_dot(*compilation->plan, invocation.files());
+    text = base::shown_lines(compiler::dump_dot(*compilation->plan, invocation.files()));
   }
   if (options.out.empty() && invocation.options().json) {
     sink.error_about(codes::kUsage, "", "--json needs --output: the text is no JSON");
   } else if (options.out.empty()) {
-    pieces([&](std::string_view piece) { invocation.result(std::string(piece)); });
+    pieces([&](std::string_view piece) { invocation.exact_result(std::string(piece)); });
   } else if (base::write_output(options.out, pieces, invocation.files(), sink)) {
     invocation.remark(fmt::format("{}: {} variables, {} clauses, horizon {}", options.out,
                                   model.variable_count(), model.clause_count(), model.horizon));

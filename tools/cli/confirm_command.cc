@@ -84,7 +84,7 @@ Options as_asked(Options options, const BorderOptions& border, const Invocation&
 }
 
 void end_progress(const TriedStartsOptions& starts) {
-  if (starts.progress) write_error("\r\x1b[K");
+  if (starts.progress) clear_progress();
 }
 
 struct ConfirmCommandOptions {

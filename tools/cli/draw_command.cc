@@ -70,7 +70,10 @@ class Writer {
   bool write(const fs::path& path, const std::string& text) {
     std::error_code error;
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
-    if (!base::write_output(path, text, invocation_.files(), invocation_.sink())) return false;
+    if (!base::write_output(path, text, invocation_.files(), invocation_.sink(),
+                            base::TextForm::kMarkup)) {
+      return false;
+    }
     written_.push_back(path.string());
     return true;
   }
@@ -82,8 +85,8 @@ class Writer {
       if (!index.empty()) document["index"] = index;
       return invocation_.document(base::json_text(document) + "\n");
     }
-    for (const auto& path : written_) invocation_.result(path + "\n");
-    if (!index.empty()) invocation_.result(index + "\n");
+    for (const auto& path : written_) invocation_.result(base::printable(path) + "\n");
+    if (!index.empty()) invocation_.result(base::printable(index) + "\n");
   }
 
  private:
@@ -391,7 +394,7 @@ int draw_run(const DrawOptions& options, Invocation& invocation) {
   const auto inline_svgs = svgs_of(*album, regions, !options.no_regions, false);
   const auto page = index_of(*album, inline_svgs, *run, parting);
   const auto path = folder / "index.html";
-  if (!base::write_output(path, page, invocation.files(), sink)) return 0;
+  if (!base::write_output(path, page, invocation.files(), sink, base::TextForm::kMarkup)) return 0;
   writer.report(path.string());
   return 0;
 }

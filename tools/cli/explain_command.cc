@@ -119,7 +119,7 @@ base::Result<std::vector<harness::SampleRecord>> make_further_runs(const Explain
     if (!again) return sink.already_reported();
     persistence = *again;
   }
-  if (further.progress) write_error("\r\x1b[K");
+  if (further.progress) clear_progress();
   return made;
 }
 

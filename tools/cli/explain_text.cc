@@ -12,7 +12,7 @@ namespace parallax::tools {
 
 std::string origin_place(const compiler::Origin& origin) {
   if (origin.place.file.empty()) return {};
-  return origin.place.file + ':' + std::to_string(origin.place.begin.line);
+  return base::printable(origin.place.file) + ':' + std::to_string(origin.place.begin.line);
 }
 
 std::string axiom_text(const compiler::Origin& origin) {

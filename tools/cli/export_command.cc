@@ -102,7 +102,8 @@ int export_motion(const ExportOptions& options, Invocation& invocation) {
   if (!check_replaceable(output, is_csv ? harness::is_motion_csv : harness::is_motion_mcap,
                          invocation.files(), sink))
     return 0;
-  if (!base::write_output(output, text, invocation.files(), sink)) return 0;
+  const auto form = is_csv ? base::TextForm::kLines : base::TextForm::kExact;
+  if (!base::write_output(output, text, invocation.files(), sink, form)) return 0;
   const auto sample = fmt::format("{}.{}", id->trace, id->sample);
   if (json) {
     const nlohmann::ordered_json document{{"status", "ok"},
@@ -114,8 +115,9 @@ int export_motion(const ExportOptions& options, Invocation& invocation) {
                                           {"bytes", text.size()}};
     invocation.document(base::json_text(document) + "\n");
   } else {
-    invocation.result(fmt::format("{}: simulation {}, {} frames, {:.0f} kB\n", output, sample,
-                                  frame_count(*recording), static_cast<double>(text.size()) / 1e3));
+    invocation.result(fmt::format("{}: simulation {}, {} frames, {:.0f} kB\n",
+                                  base::printable(output), sample, frame_count(*recording),
+                                  static_cast<double>(text.size()) / 1e3));
   }
   return 0;
 }

@@ -73,7 +73,7 @@ bool format_one(const std::string& path, const FmtOptions& options, Invocation& 
   }
   if (options.check) return changed;
   if (standard || options.to_stdout) {
-    invocation.result(*formatted);
+    invocation.exact_result(*formatted);
   } else if (changed) {
     write_back(path, *formatted, invocation);
   }
@@ -92,7 +92,8 @@ int format(const FmtOptions& options, Invocation& invocation) {
   for (const auto& path : options.files) {
     if (!format_one(path, options, invocation)) continue;
     changed.push_back(base::printable(path));
-    if (options.check && !invocation.options().json) invocation.result(path + '\n');
+    if (options.check && !invocation.options().json)
+      invocation.result(base::printable(path) + '\n');
   }
   if (invocation.sink().has_errors()) return 0;
   if (invocation.options().json) {

@@ -53,14 +53,15 @@ int run_learn(const LearnCommandOptions& options, Invocation& invocation) {
                                    invocation);
       },
       invocation);
-  if (learn_options.progress) write_error("\r\x1b[K");
+  if (learn_options.progress) clear_progress();
   if (!result) return 0;
   if (!options.output.empty() &&
-      !base::write_output(options.output, result->model, invocation.files(), invocation.sink())) {
+      !base::write_output(options.output, result->model, invocation.files(), invocation.sink(),
+                          base::TextForm::kExact)) {
     return 0;
   }
   invocation.options().json ? invocation.document(learn_json(*result, learn_options))
-                            : invocation.result(result->model);
+                            : invocation.exact_result(result->model);
   if (invocation.options().verbosity > 0) {
     for (const auto& each : result->remarks) invocation.remark(each);
   }

@@ -24,10 +24,7 @@ std::string g_stopped_text;
 /// which no reader takes for the end.
 void write_stopped_text() {
   const std::unique_lock lock(g_stopped_mutex, std::try_to_lock);
-  if (!lock.owns_lock() || ftrylockfile(stdout) != 0) return;
-  std::fwrite(g_stopped_text.data(), 1, g_stopped_text.size(), stdout);
-  std::fflush(stdout);
-  funlockfile(stdout);
+  if (lock.owns_lock()) print_if_free(g_stopped_text);
 }
 
 void on_out_of_memory() {
@@ -52,9 +49,7 @@ void end_for_limit(const CommonOptions& options, const std::string& limit) {
   const auto diagnostics = sink.sorted();
   write_stopped_text();
   if (options.json) {
-    const auto text = error_document(diagnostics, files);
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    std::fflush(stdout);
+    print(error_document(diagnostics, files));
   }
   write_error(base::to_text(diagnostics.front(), files, {}));
   _exit(4);

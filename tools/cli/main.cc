@@ -1,4 +1,4 @@
-#include <cstdio>
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <vector>
@@ -29,11 +29,16 @@ constexpr const char* kFooter =
     "5 internal error, 130 and 143 interrupted.\n"
     "More: parallax help exit-codes, files, output, seeds, trust, limits; parallax COMMAND --help.";
 
+/// The words that are this program's: what stands behind `--` is a command of another's.
+std::vector<std::string> own_words(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + std::max(argc, 1));
+  words.erase(std::find(words.begin(), words.end(), "--"), words.end());
+  return words;
+}
+
 bool wants_json(int argc, char** argv) {
-  for (int i = 1; i < argc; ++i) {
-    if (std::string_view(argv[i]) == "--json") return true;
-  }
-  return false;
+  const auto words = own_words(argc, argv);
+  return std::find(words.begin(), words.end(), "--json") != words.end();
 }
 
 int usage_error(const ParsedLine& line, std::string_view command, int argc, char** argv) {
@@ -44,11 +49,12 @@ int usage_error(const ParsedLine& line, std::string_view command, int argc, char
       codes::kUsage, "",
       no_such_command ? fmt::format("there is no command `{}`", base::printable(argv[1]))
                       : line.error);
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+  const auto words = own_words(argc, argv);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const auto word = words[i].substr(0, words[i].find('='));
     bool known = false;
     for (const auto& name : line.known) known = known || name == word;
-    const bool could_be_command = i == 1 && command.empty();
+    const bool could_be_command = i == 0 && command.empty();
     if (known || (!word.starts_with("--") && !could_be_command)) continue;
     if (const auto near = base::nearest_name(word, line.known)) {
       built.fix(fmt::format("replace `{}` with `{}`", word, *near));
@@ -58,8 +64,7 @@ int usage_error(const ParsedLine& line, std::string_view command, int argc, char
   built.note(fmt::format("see `parallax {}{}--help`", command, command.empty() ? "" : " "));
   const auto diagnostics = sink.sorted();
   if (wants_json(argc, argv)) {
-    const auto document = error_document(diagnostics, files);
-    std::fwrite(document.data(), 1, document.size(), stdout);
+    print(error_document(diagnostics, files));
   }
   write_error(base::to_text(diagnostics.front(), files, {}));
   return 2;
@@ -112,7 +117,7 @@ int run(int argc, char** argv) {
     return usage_error(line, command != nullptr ? command->options.name() : "", argc, argv);
   }
   if (line.exit_code) {  // --help, --version
-    std::fwrite(line.output.data(), 1, line.output.size(), stdout);
+    print(line.output);
     return *line.exit_code;
   }
   memory_limit_mb = options.memory_limit_mb;
@@ -129,8 +134,9 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   namespace base = parallax::base;
+  using parallax::tools::close_output;
   try {
-    return parallax::tools::run(argc, argv);
+    return close_output(parallax::tools::run(argc, argv));
   } catch (const std::exception& error) {
     // A broken contract, or the machine has no memory or threads left.
     base::DiagnosticSink sink;
@@ -147,9 +153,8 @@ int main(int argc, char** argv) {
     const base::SourceFiles files;
     parallax::tools::write_error(base::to_text(sink.sorted().front(), files, {}));
     if (parallax::tools::wants_json(argc, argv)) {
-      const auto document = parallax::tools::error_document(sink.sorted(), files);
-      std::fwrite(document.data(), 1, document.size(), stdout);
+      parallax::tools::print(parallax::tools::error_document(sink.sorted(), files));
     }
-    return sink.exit_code();
+    return close_output(sink.exit_code());
   }
 }

@@ -64,8 +64,8 @@ MonitorProgress progress_of(const Invocation& invocation) {
   return [](const MonitorResult& result) {
     const double rate =
         result.wall_s > 0 ? static_cast<double>(result.observations) / result.wall_s : 0.0;
-    write_error(fmt::format("\r{} observations, {} steps, {:.0f} observations/s \x1b[K",
-                            result.observations, result.events, rate));
+    show_progress(fmt::format("{} observations, {} steps, {:.0f} observations/s",
+                              result.observations, result.events, rate));
   };
 }
 
@@ -96,7 +96,7 @@ int monitor(const MonitorOptions& options, Invocation& invocation) {
   const auto progress = progress_of(invocation);
   const auto name = options.log == "-" ? std::string("<stdin>") : options.log;
   const auto result = monitor_log(**watch, file->get(), name, invocation, progress);
-  if (progress) write_error("\r\x1b[K");
+  if (progress) clear_progress();
   if (invocation.options().json) {
     invocation.document(monitor_json(result, options.scenario));
   } else {

@@ -332,12 +332,12 @@ int run_proof(const ProveOptions& options, const ScenarioModel& loaded, Invocati
   const bool shows = progress_on_terminal(invocation.options()) != nullptr;
   if (shows) {
     limits.progress = [](std::int64_t boxes, double open) {
-      write_error(fmt::format("\r{} boxes, {:.2f} % open\x1b[K", boxes, 100.0 * open));
+      show_progress(fmt::format("{} boxes, {:.2f} % open", boxes, 100.0 * open));
     };
   }
   certificate.actions = harness::certify(task->actions, limits);
   certificate.stopped = stop_flag().load();
-  if (shows) write_error("\r\x1b[K");
+  if (shows) clear_progress();
   std::vector<harness::SimulatedTest> simulated;
   if (options.simulate > 0) {
     simulated = harness::simulate_tests(scenario.world, task->layout, task->prepared.sampler,

@@ -105,7 +105,7 @@ int run_rare(const RateOptions& options, const ScenarioModel& loaded, harness::T
   rates.progress = progress_on_terminal(invocation.options());
   const auto result = harness::estimate_rare_rates(loaded.scenario, traces, simulator, rates,
                                                    rare_method(options), invocation.sink());
-  if (rates.progress) write_error("\r\x1b[K");
+  if (rates.progress) clear_progress();
   if (!result) return 0;
   if (invocation.options().json) {
     invocation.document(harness::rates_json(*result));
@@ -161,12 +161,12 @@ int run_rates(const RateOptions& given, Invocation& invocation) {
   rates.on_sample = samples.listener();
   auto result =
       harness::estimate_rates(loaded->scenario, traces, *simulator, rates, invocation.sink());
-  if (rates.progress) write_error("\r\x1b[K");
+  if (rates.progress) clear_progress();
   if (!report_fleet(*workers, invocation) || !result || !samples.write(invocation)) return 0;
   if (options.cause_kinds) add_cause_kinds(samples.rows(), loaded->world != nullptr, *result);
   if (!options.plot.empty() &&
       !base::write_output(options.plot, rates_page(*result, samples.rows()), invocation.files(),
-                          invocation.sink())) {
+                          invocation.sink(), base::TextForm::kMarkup)) {
     return 0;
   }
   if (invocation.options().json) {

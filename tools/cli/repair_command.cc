@@ -95,7 +95,7 @@ int repair_loop(const RepairCommandOptions& options, const ExperimentOptions& ex
     return refuse("--apply", "--loop takes the first proposal of each round: --apply 1");
   }
   const auto loop = repair_in_rounds({given, experiments, options.out, options.rounds}, invocation);
-  if (experiments.progress) write_error("\r\x1b[K");
+  if (experiments.progress) clear_progress();
   if (!loop) return 0;
   invocation.options().json ? invocation.document(loop_json(*loop))
                             : invocation.result(loop_text(*loop));
@@ -129,7 +129,7 @@ int repair(const RepairCommandOptions& options, Invocation& invocation) {
     return report_fleet(*workers, invocation) ? code : 0;
   }
   const auto result = repair_with_experiments(repair, experiments, invocation);
-  if (experiments.progress) write_error("\r\x1b[K");
+  if (experiments.progress) clear_progress();
   if (!report_fleet(*workers, invocation) || !result) return 0;
   if (invocation.options().verbosity > 0) {
     for (const auto& text : result->remarks) invocation.remark(text);

@@ -105,7 +105,7 @@ int watch(const ReportOptions& options, Invocation& invocation) {
       Context own(invocation.form(), invocation.stop());
       const auto page = gather_page({folder, options.scenario, false, false, {}, {}}, own);
       if (page && !base::write_output(page_path(options), run_page(*page, {2}), invocation.files(),
-                                      invocation.sink())) {
+                                      invocation.sink(), base::TextForm::kMarkup)) {
         return 0;
       }
     }
@@ -134,7 +134,7 @@ int report_history(const ReportOptions& options, Invocation& invocation) {
   const auto remarks = remarks_on(*history, options.history);
   for (const auto& remark : remarks) invocation.remark(base::printable(remark));
   const auto page = history_page(*history, options.history, kHistoryConfidence);
-  if (!base::write_output(path, page, invocation.files(), sink)) return 0;
+  if (!base::write_output(path, page, invocation.files(), sink, base::TextForm::kMarkup)) return 0;
   std::string text;
   auto list = nlohmann::ordered_json::array();
   for (const auto& suite : suites_of(*history)) {
@@ -157,7 +157,7 @@ int report_history(const ReportOptions& options, Invocation& invocation) {
         {"changes", list},      {"missing", remarks}};
     invocation.document(base::json_text(document) + '\n');
   } else {
-    invocation.result((text.empty() ? "nothing changed\n" : text) + path + '\n');
+    invocation.result((text.empty() ? "nothing changed\n" : text) + base::printable(path) + '\n');
   }
   return 0;
 }
@@ -191,7 +191,10 @@ int report(const ReportOptions& options, Invocation& invocation) {
   }
   const auto text = pages.size() == 1 ? run_page(pages.front()) : comparison_page(pages);
   const auto path = page_path(options);
-  if (!base::write_output(path, text, invocation.files(), invocation.sink())) return 0;
+  if (!base::write_output(path, text, invocation.files(), invocation.sink(),
+                          base::TextForm::kMarkup)) {
+    return 0;
+  }
   if (invocation.options().json) {
     auto missing = nlohmann::ordered_json::array();
     for (const auto& page : pages) {
@@ -201,7 +204,7 @@ int report(const ReportOptions& options, Invocation& invocation) {
         {"status", "ok"}, {"page", path}, {"bytes", text.size()}, {"missing", missing}};
     invocation.document(base::json_text(document) + '\n');
   } else {
-    invocation.result(path + '\n');
+    invocation.result(base::printable(path) + '\n');
   }
   return 0;
 }

@@ -257,7 +257,7 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   auto ran = closed ? run_closed(options, *loaded, *simulator, campaign, opinion->get(), invocation)
                     : run_open(*loaded, *simulator, campaign, opinion->get(), invocation);
   auto& result = ran.result;
-  if (campaign.progress) write_error("\r\x1b[K");
+  if (campaign.progress) clear_progress();
   if (!report_fleet(*workers, invocation) || !result) return 0;
   if (!samples.write(invocation)) return 0;
   result->coverage = coverage_of_run(*loaded, *result, invocation);

@@ -58,11 +58,11 @@ int conclude(SuiteRecord& record, const SuiteOptions& options, Invocation& invoc
   auto& sink = invocation.sink();
   bool saved = record.save(sink).has_value();
   if (!options.markdown.empty()) {
-    saved =
-        base::write_file_atomically(options.markdown, summary_markdown(record), sink).has_value() &&
-        saved;
+    saved = base::write_output(options.markdown, summary_markdown(record), invocation.files(), sink)
+                .has_value() &&
+            saved;
   }
-  if (options.annotations == "github") write_error(github_annotations(record));
+  if (options.annotations == "github") write_error(github_annotations(record), {.commands = true});
   if (invocation.options().json) {
     invocation.document(summary_document(record));
   } else {

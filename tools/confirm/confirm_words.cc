@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/base/shown_text.h"
 #include "tools/confirm/confirm.h"
 
 namespace parallax::tools {
@@ -198,7 +199,7 @@ std::vector<std::string> names_of(const Confirmation& confirmation, ParameterRol
   std::vector<std::string> out;
   for (std::size_t p = 0; p < confirmation.parameters.size(); ++p) {
     if (confirmation.shrunk->roles[p] == role) {
-      out.push_back(confirmation.parameters[p].range.name);
+      out.push_back(base::printable(confirmation.parameters[p].range.name));
     }
   }
   return out;
@@ -261,17 +262,18 @@ std::string parameter_rows(const Confirmation& confirmation) {
   };
   std::size_t width = 0;
   for (std::size_t p = 0; p < confirmation.parameters.size(); ++p) {
-    if (is_told(p)) width = std::max(width, confirmation.parameters[p].range.name.size());
+    if (is_told(p))
+      width = std::max(width, base::printable(confirmation.parameters[p].range.name).size());
   }
   std::string out;
   for (std::size_t p = 0; p < confirmation.parameters.size(); ++p) {
     if (!is_told(p)) continue;
     const auto& parameter = confirmation.parameters[p];
     const auto apart = 0.1 * parameter.range.width();
-    out += fmt::format("  {:<{}}  {} of {} to {}: {}\n", parameter.range.name, width,
-                       rounded(parameter.failing, apart), rounded(parameter.range.lower, apart),
-                       value_text(parameter, parameter.range.upper, apart),
-                       role_words(confirmation, p));
+    out += fmt::format(
+        "  {:<{}}  {} of {} to {}: {}\n", base::printable(parameter.range.name), width,
+        rounded(parameter.failing, apart), rounded(parameter.range.lower, apart),
+        value_text(parameter, parameter.range.upper, apart), role_words(confirmation, p));
   }
   const auto idle = names_of(confirmation, ParameterRole::kIndifferent);
   if (idle.empty() || confirmation.shrunk->middle == StartVerdict::kFails) return out;
@@ -299,7 +301,8 @@ std::vector<std::string> confirm_sentences(const Confirmation& confirmation) {
     for (std::size_t p = 0; p < confirmation.parameters.size(); ++p) {
       if (confirmation.shrunk->roles[p] != ParameterRole::kDecides) continue;
       const auto& parameter = confirmation.parameters[p];
-      add(fmt::format("`{}`: {}.", parameter.range.name, role_words(confirmation, p)));
+      add(fmt::format("`{}`: {}.", base::printable(parameter.range.name),
+                      role_words(confirmation, p)));
     }
     if (!confirmation.shrunk->borders.empty()) {
       add(is_partial(confirmation)
@@ -314,8 +317,9 @@ std::vector<std::string> confirm_sentences(const Confirmation& confirmation) {
 }
 
 std::string confirm_text(const Confirmation& confirmation, const std::string& run_dir) {
-  std::string out = fmt::format("{}: simulation {}.{}, {}\n", run_dir, confirmation.sample.trace,
-                                confirmation.sample.sample, confirmation.words);
+  std::string out =
+      fmt::format("{}: simulation {}.{}, {}\n", base::printable(run_dir), confirmation.sample.trace,
+                  confirmation.sample.sample, base::printable(confirmation.words));
   const auto row = [&](const std::string& name, const std::string& words) {
     out += fmt::format("  {:<12} {}\n", name, words);
   };
@@ -340,7 +344,8 @@ std::string confirm_text(const Confirmation& confirmation, const std::string& ru
     out += words + '\n';
   }
   out += fmt::format("{} simulation{}, on record in {}/{}\n", confirmation.runs,
-                     confirmation.runs == 1 ? "" : "s", run_dir, TriedStarts::kFolder);
+                     confirmation.runs == 1 ? "" : "s", base::printable(run_dir),
+                     TriedStarts::kFolder);
   return out;
 }
 
@@ -359,7 +364,7 @@ std::vector<std::string> threshold_sentences(const Threshold& threshold) {
     const auto apart = 0.1 * parameter.range.width();
     auto line = fmt::format(
         "`{}` from {} to {}, all else as in simulation {}.{}: it happens at {} of {} values",
-        parameter.range.name, rounded(parameter.range.lower, apart),
+        base::printable(parameter.range.name), rounded(parameter.range.lower, apart),
         value_text(parameter, parameter.range.upper, apart), threshold.sample.trace,
         threshold.sample.sample, count(StartVerdict::kFails), scan.points.size());
     if (const auto others = count(StartVerdict::kOtherwise); others > 0) {
@@ -393,8 +398,9 @@ std::vector<std::string> threshold_sentences(const Threshold& threshold) {
 }
 
 std::string threshold_text(const Threshold& threshold, const std::string& run_dir) {
-  std::string out = fmt::format("{}: simulation {}.{}, {}\n", run_dir, threshold.sample.trace,
-                                threshold.sample.sample, threshold.words);
+  std::string out =
+      fmt::format("{}: simulation {}.{}, {}\n", base::printable(run_dir), threshold.sample.trace,
+                  threshold.sample.sample, base::printable(threshold.words));
   for (const auto& point : threshold.scan.points) {
     const char* words = point.verdict == StartVerdict::kFails       ? "it happens"
                         : point.verdict == StartVerdict::kClean     ? "it does not"
@@ -407,8 +413,9 @@ std::string threshold_text(const Threshold& threshold, const std::string& run_di
         words, own ? ", as recorded" : "");
   }
   for (const auto& sentence : threshold_sentences(threshold)) out += sentence + '\n';
-  out += fmt::format("{} simulation{}, on record in {}/{}\n", threshold.runs,
-                     threshold.runs == 1 ? "" : "s", run_dir, TriedStarts::kFolder);
+  out +=
+      fmt::format("{} simulation{}, on record in {}/{}\n", threshold.runs,
+                  threshold.runs == 1 ? "" : "s", base::printable(run_dir), TriedStarts::kFolder);
   return out;
 }
 

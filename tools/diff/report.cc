@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "compiler/base/json.h"
+#include "compiler/base/shown_text.h"
 #include "tools/diff/model_difference.h"
 
 namespace parallax::tools {
@@ -125,7 +126,7 @@ std::string edit_text(const SideView& side, const Edit& edit, bool lost) {
 }
 
 std::string place_of(const compiler::Origin& origin) {
-  return fmt::format("{}:{}", origin.place.file, origin.place.begin.line);
+  return fmt::format("{}:{}", base::printable(origin.place.file), origin.place.begin.line);
 }
 
 std::string witness_text(const SideView& side, bool lost) {

@@ -336,7 +336,8 @@ class ScenarioLearner {
     auto& sink = context_.sink();
     if (!folder_->write_scenario(options_.out, taught_->text(), "learned.e", "learned.yaml",
                                  result_.judged_in_closed_loop) ||
-        !base::write_file_atomically(options_.out / "log.txt", learn_log(result_), sink)) {
+        !base::write_file_atomically(options_.out / "log.txt", learn_log(result_), sink,
+                                     base::TextForm::kLines)) {
       return sink.already_reported();
     }
     return base::Unit{};

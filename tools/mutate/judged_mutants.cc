@@ -1,6 +1,8 @@
 #include "tools/mutate/judged_mutants.h"
 
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <sstream>
 #include <system_error>
 
@@ -100,7 +102,10 @@ base::Result<JudgedMutants> JudgedMutants::open(const fs::path& file, const std:
   }
   fs::create_directories(file.parent_path(), error);
   if (!base::write_file_atomically(file, kept, sink)) return sink.already_reported();
-  out.out_.open(file, std::ios::app | std::ios::binary);
+  out.out_ = base::Descriptor(::open(file.c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC));
+  if (!out.out_.valid()) {
+    return sink.error_about(codes::kFileNotWritable, file.string(), std::strerror(errno));
+  }
   return out;
 }
 
@@ -112,7 +117,12 @@ std::optional<Judgement> JudgedMutants::find(const Mutant& mutant) const {
 
 void JudgedMutants::add(const Mutant& mutant, const Judgement& judgement) {
   const std::lock_guard lock(*mutex_);
-  out_ << line_of(mutant, judgement) << std::flush;
+  if (error_ == 0 && !base::write_all(out_.get(), line_of(mutant, judgement))) error_ = errno;
+}
+
+int JudgedMutants::write_error() const {
+  const std::lock_guard lock(*mutex_);
+  return error_;
 }
 
 }  // namespace parallax::tools

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 
+#include "compiler/base/descriptor.h"
 #include "compiler/base/diagnostic.h"
 #include "tools/mutate/mutant_judge.h"
 
@@ -28,11 +28,14 @@ class JudgedMutants {
 
   std::optional<Judgement> find(const Mutant& mutant) const;
   void add(const Mutant& mutant, const Judgement& judgement);
+  /// The `errno` of the first line that could not be written; 0: all were.
+  int write_error() const;
 
  private:
   std::map<std::string, Judgement> known_;  // by key
   std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();
-  std::ofstream out_;
+  base::Descriptor out_;
+  int error_ = 0;
 };
 
 }  // namespace parallax::tools

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstring>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -169,6 +170,10 @@ class SuiteMutation {
       progress(score_.judgements[i], files_.mutants[i]);
     });
     if (failed_) return sink.already_reported();
+    if (const int error = judged->write_error(); error != 0) {
+      const auto file = options_.out / kJudgedFile;
+      sink.error_about(codes::kFileNotWritable, file.string(), std::strerror(error));
+    }
     return base::Unit{};
   }
 

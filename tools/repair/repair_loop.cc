@@ -253,7 +253,8 @@ class Rounds {
     auto& sink = context_.sink();
     const fs::path out = options_.out;
     const auto patch = patch_from_here(loop_.files);
-    if (!base::write_file_atomically(out / "rounds.txt", loop_text(loop_), sink) ||
+    if (!base::write_file_atomically(out / "rounds.txt", loop_text(loop_), sink,
+                                     base::TextForm::kLines) ||
         !base::write_file_atomically(out / "rounds.json", loop_json(loop_), sink) ||
         !base::write_file_atomically(out / "repair.patch", patch, sink)) {
       return sink.already_reported();

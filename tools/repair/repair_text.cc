@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include "compiler/base/json.h"
+#include "compiler/base/shown_text.h"
 #include "tools/repair/repair.h"
 #include "tools/repair/trace_numbers.h"
 
@@ -12,6 +13,11 @@ using Json = nlohmann::ordered_json;
 
 std::string plural(std::size_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::vector<std::string> printed(std::vector<std::string> lines) {
+  for (auto& line : lines) line = base::printable(line);
+  return lines;
 }
 
 std::string parting_text(const RunParting& parting) {
@@ -38,10 +44,11 @@ std::string head(const RepairResult& result, const std::string& folder) {
   }
   // Where runs contradict each other no axiom is simply wrong.
   for (const auto& text : result.contradictions) {
-    out += fmt::format(
-        "  {}: chance, or the simulator, or something that the model has no word for\n", text);
+    out +=
+        fmt::format("  {}: chance, or the simulator, or something that the model has no word for\n",
+                    base::printable(text));
   }
-  for (const auto& cause : result.causes) out += "  " + cause.words + "\n";
+  for (const auto& cause : result.causes) out += "  " + base::printable(cause.words) + "\n";
   for (const auto& parting : result.partings) out += parting_text(parting);
   return out;
 }
@@ -65,19 +72,19 @@ void add_properties(const Proposal& proposal, std::vector<std::string>& out) {
 std::string proposal_text(const Proposal& proposal, std::size_t rank, const RepairResult& result) {
   auto out = fmt::format("\n{}. {}{}.\n", rank, proposal.words, tie_text(proposal.tied));
   for (const auto& sentence : proposal_sentences(proposal, result.runs)) {
-    out += "   " + sentence + "\n";
+    out += "   " + base::printable(sentence) + "\n";
   }
   const auto place = patch_place_words(proposal.files);
-  if (!place.empty()) out += "   " + place + "\n";
+  if (!place.empty()) out += "   " + base::printable(place) + "\n";
   return out + "\n" + patch_from_here(proposal.files);
 }
 
 std::string tie_text(const RepairResult& result) {
   std::string out;
   const auto words = tie_words(result);
-  for (const auto& sentence : words.refuted) out += "\n" + sentence;
+  for (const auto& sentence : words.refuted) out += "\n" + base::printable(sentence);
   if (!out.empty()) out += "\n";
-  for (const auto& sentence : words.open) out += "\n" + sentence + "\n";
+  for (const auto& sentence : words.open) out += "\n" + base::printable(sentence) + "\n";
   return out;
 }
 
@@ -156,11 +163,11 @@ TieWords tie_words(const RepairResult& result) {
 }
 
 std::string repair_text(const RepairResult& result, const RepairOptions& options) {
-  const auto& folder = options.folder.folder;
+  const auto folder = base::printable(options.folder.folder);
   if (result.runs == 0) return folder + ": no simulation in it came to its end\n";
   if (result.partings.empty() && !result.remarks.empty()) {
     return fmt::format("{}: {}, and nothing that an edit of the model could mend:\n  {}\n", folder,
-                       plural(result.runs, "run"), fmt::join(result.remarks, "\n  "));
+                       plural(result.runs, "run"), fmt::join(printed(result.remarks), "\n  "));
   }
   if (result.partings.empty() && !result.finished) {
     return fmt::format(
@@ -179,8 +186,9 @@ std::string repair_text(const RepairResult& result, const RepairOptions& options
   if (result.proposals.empty()) {
     out += fmt::format("No edit of the grammar explains all runs ({} were considered).\n",
                        result.edits);
-    if (!result.nearest_miss.empty()) out += "Nearest miss: " + result.nearest_miss + ".\n";
-    for (const auto& hint : result.hints) out += hint + ".\n";
+    if (!result.nearest_miss.empty())
+      out += "Nearest miss: " + base::printable(result.nearest_miss) + ".\n";
+    for (const auto& hint : result.hints) out += base::printable(hint) + ".\n";
     out += fmt::format(
         "What the model says of states (constraints, definitions) is not edited; `parallax explain "
         "{}` names the axioms that a run contradicts.\n",
@@ -207,7 +215,7 @@ std::string repair_text(const RepairResult& result, const RepairOptions& options
   }
   out += tie_text(result);
   if (result.more) out += "\nThere are further ones; --limit shows more.\n";
-  for (const auto& hint : result.hints) out += "\n" + hint + ".\n";
+  for (const auto& hint : result.hints) out += "\n" + base::printable(hint) + ".\n";
   return out;
 }
 

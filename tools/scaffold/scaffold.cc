@@ -76,7 +76,9 @@ base::Status write_scaffold(const std::string& folder, const std::vector<Scaffol
   }
   for (std::size_t i = 0; i < files.size(); ++i) {
     const auto path = std::filesystem::path(folder) / files[i].name;
-    if (base::write_output(path.string(), files[i].text, read, sink)) continue;
+    if (base::write_output(path.string(), files[i].text, read, sink, base::TextForm::kExact)) {
+      continue;
+    }
     std::error_code ignored;
     for (std::size_t done = 0; done < i; ++done) {
       std::filesystem::remove(std::filesystem::path(folder) / files[done].name, ignored);

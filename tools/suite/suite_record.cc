@@ -165,7 +165,7 @@ base::Status SuiteRecord::save(base::DiagnosticSink& sink) {
   auto saved = write_results(folder_, stored_, cases_, results_, sink);
   if (!saved || junit_.empty()) return saved;
   return base::write_file_atomically(junit_, to_junit(cases_, results_, timestamp_, quarantine_),
-                                     sink);
+                                     sink, base::TextForm::kMarkup);
 }
 
 std::size_t SuiteRecord::count(Outcome outcome) const {

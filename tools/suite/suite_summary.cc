@@ -6,6 +6,7 @@
 
 #include "compiler/base/json.h"
 #include "compiler/base/markdown.h"
+#include "compiler/base/shown_text.h"
 
 namespace parallax::tools {
 namespace {
@@ -47,11 +48,9 @@ bool wants_attention(const SuiteRecord& record, std::size_t i) {
 /// As workflow commands want it: data, or the value of a property.
 std::string github_text(std::string_view text, bool is_property) {
   std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool special = c == '%' || byte < 0x20 || (is_property && (c == ':' || c == ','));
-    if (special) {
-      out += fmt::format("%{:02X}", byte);
+  for (const char c : base::printable(text)) {
+    if (c == '%' || (is_property && (c == ':' || c == ','))) {
+      out += fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
     } else {
       out += c;
     }

@@ -13,6 +13,8 @@ TEST_CASE("documents are written whatever bytes their texts hold") {
   CHECK(json_text(Json{{"a", 1}}, 2) == "{\n  \"a\": 1\n}");
   CHECK(json_quoted("a\"b\\\n\x01") == R"("a\"b\\\n\u0001")");
   CHECK(json_quoted("\xC3") == "\"\xEF\xBF\xBD\"");
+  CHECK(json_quoted("\x7F \xC2\x9B \xE2\x80\xAE \xC3\xA9") ==
+        "\"\\u007f \\u009b \\u202e \xC3\xA9\"");
 }
 
 TEST_CASE("a value is what it is, or nothing") {

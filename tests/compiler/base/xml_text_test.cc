@@ -18,6 +18,7 @@ TEST_CASE("what XML cannot hold is shown as bytes") {
   CHECK(xml_escaped("\x1b[31mred") == "\\x1B[31mred");
   CHECK(xml_escaped("\xEF\xBF\xBE") == "\\xEF\\xBF\\xBE");  // U+FFFE
   CHECK(xml_escaped("\xEF\xBF\xBD") == "\xEF\xBF\xBD");     // U+FFFD is a character
+  CHECK(xml_escaped("\x7F\xC2\x9B\xE2\x80\xAE") == "\\u007F\\u009B\\u202E");
 }
 
 TEST_CASE("bytes that are no UTF-8 are shown, characters are kept") {

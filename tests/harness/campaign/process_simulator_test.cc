@@ -314,7 +314,7 @@ TEST_CASE("a child inherits nothing but its three standard descriptors") {
   ProcessSimulator simulator(options);
   const auto reason = simulator.info().version;
   ::close(leaked);
-  CHECK(contains(reason, "standard error:\n0 1 2"));
+  CHECK(contains(reason, "standard error:\n| 0 1 2"));
   CHECK_FALSE(contains(reason, " " + std::to_string(leaked) + " "));
 }
 

@@ -265,13 +265,6 @@ TEST_CASE("an argument beyond the integers of JSON keeps its value") {
   CHECK(check_formats(model.compiled) == 16);
 }
 
-TEST_CASE("a field of a CSV file is quoted where it must be, and only there") {
-  CHECK(runtime::csv_field("F()") == "F()");
-  CHECK(runtime::csv_field("At(a,b)") == "\"At(a,b)\"");
-  CHECK(runtime::csv_field("a\"b") == "\"a\"\"b\"");
-  CHECK(runtime::csv_field("a\nb") == "\"a\nb\"");
-}
-
 TEST_CASE("a name in a JSON line is escaped where it must be") {
   const Names names = {"A()", "a\nb\x01", "a\"b\\c", "\xc3\xa9"};  // sorted by bytes
   NamedTrace named(1, 1);
