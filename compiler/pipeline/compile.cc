@@ -77,6 +77,27 @@ void set_horizon(const PlanGraph& graph, std::int64_t max_horizon, TypedModel& m
   time.ranges[0].upper = std::clamp(longest, std::int64_t{1}, max_horizon);
 }
 
+std::string counted_arguments(std::size_t count) {
+  if (count == 0) return "no arguments";
+  return fmt::format("{} argument{}", count, count == 1 ? "" : "s");
+}
+
+/// Reports why `entry` names no event of the model: a symbol of another kind, another number of
+/// arguments, or a name that is not there.
+base::DiagnosticBuilder report_performed(const BindingEntry& entry, const Symbol* symbol,
+                                         base::DiagnosticSink& sink) {
+  if (symbol == nullptr) {
+    return sink.error(codes::kPlanEventUnknown, entry.source, entry.event_symbol);
+  }
+  if (symbol->kind != SymbolKind::kEvent) {
+    return sink.error(codes::kPlanPerformsOther, entry.source, entry.event_symbol,
+                      kind_word(symbol->kind));
+  }
+  return sink.error(codes::kPlanEventArity, entry.source, entry.event_symbol,
+                    counted_arguments(entry.event_arguments.size()),
+                    counted_arguments(symbol->arguments.size()));
+}
+
 /// Are the events that the plan performs events of the model, as far as one can tell from their
 /// names? Reported at the binding table, where they are named.
 base::Status check_performed(const PlanGraph& graph, const PlanBinding& binding,
@@ -92,7 +113,7 @@ base::Status check_performed(const PlanGraph& graph, const PlanBinding& binding,
     const bool fits = symbol && model.symbols[*symbol].kind == SymbolKind::kEvent &&
                       model.symbols[*symbol].arguments.size() == entry.event_arguments.size();
     if (performed == graph.locations.end() || fits) continue;
-    auto error = sink.error(codes::kPlanEventUnknown, entry.source, entry.event_symbol);
+    auto error = report_performed(entry, symbol ? &model.symbols[*symbol] : nullptr, sink);
     error.note(performed->source, "performed here");
     const auto near = symbol ? symbol : NameAdvice(model, sink).symbol(entry.event_symbol, kEvents);
     if (!near) continue;

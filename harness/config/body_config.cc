@@ -85,8 +85,10 @@ void read_form(const YamlFields& fields, BodyShape& shape) {
     const auto* node = fields.find(round.key);
     if (node == nullptr) continue;
     if (taken) {
-      fields.sink().error(codes::kUnknownKey, node->range, round.key,
-                          fields.what() + ", which has another form already");
+      fields.sink()
+          .error(codes::kUnknownKey, node->range, round.key,
+                 fields.what() + ", which has another form already")
+          .help("Remove one of the two.");
       return;
     }
     taken = true;
@@ -94,8 +96,10 @@ void read_form(const YamlFields& fields, BodyShape& shape) {
   }
   if (const auto* hull = fields.find(Key::kHull)) {
     if (!taken) return read_hull(*hull, shape, fields.sink());
-    fields.sink().error(codes::kUnknownKey, hull->range, Key::kHull,
-                        fields.what() + ", which has another form already");
+    fields.sink()
+        .error(codes::kUnknownKey, hull->range, Key::kHull,
+               fields.what() + ", which has another form already")
+        .help("Remove one of the two.");
     return;
   }
   if (form != nullptr) {
@@ -179,9 +183,10 @@ void read_shapes(const YamlFields& fields, BodySpec& body) {
                            list != nullptr ? Key::kRing : Key::kSizeM}) {
     const auto* extra = fields.find(other);
     if (extra == nullptr) continue;
-    fields.sink().error(
-        codes::kUnknownKey, extra->range, other,
-        fmt::format("{}, which has `{}` or `{}`", fields.what(), Key::kShapes, Key::kRing));
+    fields.sink()
+        .error(codes::kUnknownKey, extra->range, other,
+               fmt::format("{}, which has `{}` or `{}`", fields.what(), Key::kShapes, Key::kRing))
+        .help("Remove one of the two.");
     return;
   }
   if (ring != nullptr) {
@@ -278,8 +283,10 @@ void refuse_of_gantries(const YamlFields& fields) {
   for (const auto key : {Key::kJoint, Key::kShoulderM, Key::kReachM}) {
     const auto* node = fields.find(key);
     if (node == nullptr) continue;
-    fields.sink().error(codes::kUnknownKey, node->range, key,
-                        fmt::format("{}, which has `{}`", fields.what(), Key::kChain));
+    fields.sink()
+        .error(codes::kUnknownKey, node->range, key,
+               fmt::format("{}, which has `{}`", fields.what(), Key::kChain))
+        .help("Remove it: it says nothing of a chain.");
   }
 }
 

@@ -110,6 +110,11 @@ void note_plan(const std::filesystem::path& path, base::SourceFiles& files) {
   }
 }
 
+/// Keys that are easily written beside `world` instead of below it.
+constexpr std::array<std::string_view, 11> kWorldKeys = {
+    Key::kSdf,    Key::kUrdf,  Key::kMjcf,   Key::kModels,        Key::kBodies,  Key::kJoints,
+    Key::kPlaces, Key::kRobot, Key::kSolver, Key::kFloorMaterial, Key::kFriction};
+
 class ScenarioReader {
  public:
   ScenarioReader(const YamlNode& root, const base::PathGate& gate, const base::SourceFiles& files,
@@ -117,6 +122,7 @@ class ScenarioReader {
       : fields_(root, "the scenario", sink), gate_(gate), files_(files), sink_(sink) {}
 
   void read(Scenario& scenario) {
+    fields_.belongs(Key::kWorld, kWorldKeys);
     fields_.only({Key::kInclude,   Key::kName,         Key::kModel,        Key::kPlan,
                   Key::kBind,      Key::kConstraints,  Key::kHorizon,      Key::kEvents,
                   Key::kWorld,     Key::kRegions,      Key::kMapping,      Key::kActions,
@@ -384,9 +390,17 @@ base::Result<WorldSpec> load_world(const std::filesystem::path& path, base::Sour
   const auto errors_before = sink.error_count();
   base::PathGate gate(allow_outside);
   gate.admit_beside(path);
-  const auto root = load_yaml(path, gate, files, sink);
-  if (!root) return sink.already_reported();
-  WorldSpec world = read_world(*root, EngineKind::kOde, sink);
+  auto world_node = load_yaml(path, gate, files, sink);
+  if (!world_node) return sink.already_reported();
+  // As in a scenario, so that what lies below `world` there may lie here.
+  YamlNode root;
+  root.kind = YamlNode::Kind::kMap;
+  root.range = world_node->range;
+  root.entries.push_back({std::string(Key::kWorld), world_node->range, *std::move(world_node)});
+  if (!add_imported(root, gate, files, sink) || !add_meshes(root, gate, files, sink)) {
+    return sink.already_reported();
+  }
+  WorldSpec world = read_world(root.entries.front().value, EngineKind::kOde, sink);
   if (sink.error_count() != errors_before) return sink.already_reported();
   return world;
 }

@@ -57,8 +57,10 @@ void refuse_other_types(const YamlFields& fields, JointType type) {
   const auto refuse = [&](std::string_view key, std::string_view others) {
     const auto* node = fields.find(key);
     if (node == nullptr) return;
-    fields.sink().error(codes::kUnknownKey, node->range, key,
-                        fmt::format("{}: it belongs to {}", fields.what(), others));
+    fields.sink()
+        .error(codes::kUnknownKey, node->range, key,
+               fmt::format("{}: it belongs to {}", fields.what(), others))
+        .help("Remove it, or change the type of the joint.");
   };
   if (type == JointType::kHinge) {
     refuse(Key::kRangeM, "sliders (a hinge has `range_rad`)");
@@ -212,7 +214,8 @@ WorldSpec read_world(const YamlNode& node, EngineKind engine, base::DiagnosticSi
   world.engine = engine;
   YamlFields fields(node, key_text(Key::kWorld), sink);
   fields.only({Key::kInclude, Key::kSolver, Key::kFriction, Key::kFloorMaterial, Key::kBodies,
-               Key::kJoints, Key::kPlaces, Key::kRobot});
+               Key::kJoints, Key::kPlaces, Key::kRobot, Key::kSdf, Key::kUrdf, Key::kMjcf,
+               Key::kModels});  // the last four were taken over before
   fields.text(Key::kFloorMaterial, world.floor_material);
   if (const auto* solver = fields.find(Key::kSolver)) world.solver = read_solver(*solver, sink);
   if (const auto* bodies = fields.require(Key::kBodies)) {

@@ -259,7 +259,7 @@ class WorldImporter {
       found = other;
       format_ = &format;
     }
-    if (found == nullptr) return true;
+    if (found == nullptr) return refuse_models();
     const YamlEntry entry = *found;
     read_request(entry);
     read_folders();
@@ -308,6 +308,18 @@ class WorldImporter {
     read_vector(fields, Key::kAtM, input_.p_WI);
     fields.number(Key::kYawRad, kAnyNumber, input_.yaw_rad);
     fields.boolean(Key::kFixed, input_.fixed);
+  }
+
+  /// Folders of models mean nothing where nothing is taken over.
+  bool refuse_models() {
+    const auto* models = world_.find(Key::kModels);
+    if (models == nullptr) return true;
+    sink_
+        .error(codes::kUnknownKey, models->key_range, models->key,
+               fmt::format("`{}` that takes no file over", Key::kWorld))
+        .help(fmt::format("Name the file to take over with `{}`, `{}` or `{}`.", Key::kSdf,
+                          Key::kUrdf, Key::kMjcf));
+    return false;
   }
 
   void refuse_fixed(const YamlEntry& fixed) {

@@ -84,7 +84,8 @@ std::string NumberBounds::text() const {
 
 void add_suggestion(base::DiagnosticBuilder& builder, std::string_view name,
                     std::span<const std::string> known, std::string_view list_title) {
-  if (!known.empty()) builder.note(fmt::format("{}: {}", list_title, fmt::join(known, ", ")));
+  builder.note(known.empty() ? fmt::format("{}: there are none", list_title)
+                             : fmt::format("{}: {}", list_title, fmt::join(known, ", ")));
   if (const auto near = base::nearest_name(name, known)) {
     builder.fix(fmt::format("replace `{}` with `{}`", name, *near));
   }
@@ -165,7 +166,12 @@ YamlFields& YamlFields::only(std::span<const std::string_view> known) {
   for (const auto& entry : node_.entries) {
     if (std::find(names.begin(), names.end(), entry.key) != names.end()) continue;
     auto error = sink_.error(codes::kUnknownKey, entry.key_range, entry.key, what_);
-    add_suggestion(error, entry.key, names, "known keys");
+    if (std::find(elsewhere_.begin(), elsewhere_.end(), entry.key) != elsewhere_.end()) {
+      error.note(fmt::format("`{}` is a key of `{}`", entry.key, section_));
+      error.help(fmt::format("Move it below `{}`.", section_));
+    } else {
+      add_suggestion(error, entry.key, names, "known keys");
+    }
   }
   return *this;
 }

@@ -47,6 +47,12 @@ class YamlFields {
     return only(std::span<const std::string_view>(known.begin(), known.size()));
   }
 
+  /// Keys that `only` refuses with the word that they belong below `section`.
+  void belongs(std::string_view section, std::span<const std::string_view> keys) {
+    section_ = section;
+    elsewhere_ = keys;
+  }
+
   const YamlNode* find(std::string_view key) const;
   /// Reports kMissingKey at the map.
   const YamlNode* require(std::string_view key) const;
@@ -76,6 +82,8 @@ class YamlFields {
   const YamlNode& node_;
   std::string what_;
   base::DiagnosticSink& sink_;
+  std::string_view section_;
+  std::span<const std::string_view> elsewhere_;
 };
 
 /// The value of a scalar, or a report that says what `name` is instead.

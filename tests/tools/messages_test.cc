@@ -133,5 +133,90 @@ TEST_CASE("the same advice is printed once") {
   CHECK(err.find(help) == err.rfind(help));
 }
 
+TEST_CASE("the file of --certify behind a blank: the message says how it is written") {
+  const CliFixture cli;
+  cli.write("old.drat", "");
+  for (const char* file : {"p.drat", "old.drat", "proof"}) {
+    for (const char* model : {"scenario.yaml", "domain.e"}) {
+      CAPTURE(file);
+      CAPTURE(model);
+      const auto wanted = "write `--certify=" + std::string(file) + "`";
+      check_only_error(cli.parallax({"traces", model, "--certify", file}), wanted, 2);
+      check_only_error(cli.parallax({"traces", "--certify", file, model}), wanted, 2);
+    }
+  }
+  // A model may stand there.
+  CHECK(cli.parallax({"traces", "--horizon", "1", "--certify", "domain.e", "start.e"}).code == 0);
+  CHECK(contains(cli.parallax({"traces", "--certify", "none.e"}).err, "none.e: error[E0001]"));
+}
+
+TEST_CASE("what stands behind -- is another program's") {
+  const CliFixture cli;
+  const auto result = cli.parallax({"record", "--", "sim", "--json"});
+  CHECK(result.code == 2);
+  CHECK(result.out == "");
+  check_only_error(result, "error[E0007]: ", 2);
+  CHECK(contains(result.err, "--output"));
+  // No advice about its options either.
+  CHECK_FALSE(contains(cli.parallax({"record", "--", "sim", "--outptu"}).err, "--outptu"));
+  CHECK(contains(cli.parallax({"record", "--json", "--", "sim"}).out, "\"status\":\"error\""));
+}
+
+TEST_CASE("an event of the binding table with another number of arguments, or no event") {
+  const CliFixture cli;
+  const auto with = [&](const std::string& from, const std::string& to) {
+    const auto table = cli.read("robot.bind");
+    cli.replace("robot.bind", from, to);
+    auto result = cli.parallax({"check", "scenario.yaml"});
+    cli.write("robot.bind", table);
+    return result;
+  };
+  const auto two = with("Go(region(?p))", "Go(region(?p),region(?p))");
+  check_only_error(
+      two,
+      "E3088]: the plan performs `Go` with 2 arguments, and the model declares it with 1 argument");
+  CHECK(contains(two.err, "note: `Go(region)` declared here"));
+  check_only_error(with("Place(region(?p))", "PickUp(region(?p))"),
+                   "E3088]: the plan performs `PickUp` with 1 argument, and the model declares it "
+                   "with no arguments");
+  check_only_error(with("Place(region(?p))", "Holding()"),
+                   "E3089]: the plan performs `Holding`, which is a fluent of the model");
+  check_only_error(with("Place(region(?p))", "Plase(region(?p))"),
+                   "which is no event of the model");
+}
+
+TEST_CASE("a contradiction of many axioms is told in a few notes and a count") {
+  const CliFixture cli;
+  std::string model = cli.read("start.e");
+  for (const char* atom : {"RobotIn(r2)", "BoxIn(r1)", "Holding()"}) {
+    model += std::string("[time] time>3 -> !HoldsAt(") + atom + ",time).\n";
+  }
+  cli.write("start.e", model + "[time] time>4 -> HoldsAt(BoxIn(r1),time).\n");
+  const auto result = cli.parallax({"run", "scenario.yaml", "--out", "r"});
+  CHECK(contains(result.err, "E7001"));
+  std::size_t parts = 0;
+  for (auto at = result.err.find("takes part"); at != std::string::npos;
+       at = result.err.find("takes part", at + 1)) {
+    ++parts;
+  }
+  CHECK(parts >= 1);
+  CHECK(parts <= 6);
+}
+
+TEST_CASE("a key that belongs below another says where; no list is promised that is not there") {
+  const CliFixture cli;
+  const auto scenario = cli.read("scenario.yaml");
+  for (const char* key : {"sdf: a.sdf", "urdf: a.urdf", "mjcf: a.xml", "bodies: {}"}) {
+    cli.write("moved.yaml", scenario + key + '\n');
+    const auto name = std::string(key).substr(0, std::string(key).find(':'));
+    const auto result = cli.parallax({"check", "moved.yaml"});
+    check_only_error(result, "error[E5102]: `" + name + "` is not a key of the scenario");
+    CHECK(contains(result.err, "note: `" + name + "` is a key of `world`"));
+    CHECK(contains(result.err, "help: Move it below `world`."));
+  }
+  cli.write("models.yaml", "include: scenario.yaml\nworld: {models: [.]}\n");
+  CHECK(contains(cli.parallax({"check", "models.yaml"}).err, "Name the file to take over"));
+}
+
 }  // namespace
 }  // namespace parallax::test

@@ -195,7 +195,9 @@ TEST_CASE("a misspelt name is reported where it is misspelt, with the right one"
   SUBCASE("an event with another number of arguments") {
     cli.replace("robot.bind", "Place(region(?p))", "Place()");
     const auto said = only("robot.bind:7:");
-    CHECK(has(said, "error[E3011]: the plan performs `Place`, which is no event of the model"));
+    CHECK(has(said,
+              "error[E3088]: the plan performs `Place` with no arguments, and the model declares "
+              "it with 1 argument"));
     CHECK(has(said, "note: `Place(region)` declared here"));
   }
   SUBCASE("an object of the plan") {

@@ -33,6 +33,54 @@ std::string proof_remark(const Context& context, const compiler::CompiledModel& 
   return "no proof of the contradiction was accepted: " + ground.proof.reason;
 }
 
+/// Notes that say where a part of the contradiction stands; a screen has no room for more.
+constexpr std::size_t kMostBlamed = 6;
+
+/// What takes part in a contradiction: first what the author wrote as a statement of its own, then
+/// what follows from declarations; within a kind in the order of the core.
+std::vector<const compiler::Origin*> blamed_origins(const compiler::CompiledModel& model,
+                                                    const std::vector<std::uint32_t>& core) {
+  std::vector<const compiler::Origin*> blamed;
+  // Several origins can share a place (the frame axiom and the declaration of a fluent).
+  for (const auto index : core) {
+    const auto* origin = &model.origins[index];
+    const bool again = std::any_of(blamed.begin(), blamed.end(), [&](const auto* other) {
+      return other->kind == origin->kind && other->source == origin->source;
+    });
+    if (!again) blamed.push_back(origin);
+  }
+  const auto rank = [](const compiler::Origin* origin) {
+    using Kind = compiler::OriginKind;
+    if (origin->kind == Kind::kAxiom || origin->kind == Kind::kStateConstraint) return 0;
+    if (origin->kind == Kind::kPlanStep) return 1;
+    return origin->kind == Kind::kEffectAxiom || origin->kind == Kind::kTrajectoryAxiom ? 2 : 3;
+  };
+  std::stable_sort(blamed.begin(), blamed.end(),
+                   [&](const auto* a, const auto* b) { return rank(a) < rank(b); });
+  return blamed;
+}
+
+/// "and 17 more take part (effect axiom: 9, frame axiom: 8): ...".
+std::string further_text(const std::vector<const compiler::Origin*>& further) {
+  std::vector<std::pair<std::string_view, std::size_t>> kinds;
+  for (const auto* origin : further) {
+    const auto name = to_string(origin->kind);
+    const auto found = std::find_if(kinds.begin(), kinds.end(),
+                                    [&](const auto& kind) { return kind.first == name; });
+    if (found == kinds.end()) {
+      kinds.emplace_back(name, 1);
+    } else {
+      ++found->second;
+    }
+  }
+  std::string list;
+  for (const auto& [name, count] : kinds) {
+    list += fmt::format("{}{}: {}", list.empty() ? "" : ", ", name, count);
+  }
+  return fmt::format("and {} more take part ({}): `parallax explain` lists all of them",
+                     further.size(), list);
+}
+
 }  // namespace
 
 base::Known report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Timepoint steps,
@@ -40,13 +88,17 @@ base::Known report_if_unsatisfiable(const compiler::CompiledModel& model, compil
   const auto core =
       runtime::find_unsat_core(model, steps, runtime::make_cadical_solver(&context.stop()));
   if (core.status != runtime::SolveStatus::kUnsatisfiable) return runtime::possible(core.status);
-  // Several origins can share a place (the frame axiom and the declaration of a fluent).
-  std::vector<const compiler::Origin*> blamed;
-  for (const auto index : core.origins) blamed.push_back(&model.origins[index]);
+  const auto blamed = blamed_origins(model, core.origins);
   const auto first = blamed.empty() ? base::SourceRange{} : blamed.front()->source;
   auto diagnostic = context.sink().error(codes::kModelUnsatisfiable, first, steps);
-  for (const auto* origin : blamed) {
-    diagnostic.note(origin->source, fmt::format("this {} takes part", to_string(origin->kind)));
+  const auto shown = std::min(blamed.size(), kMostBlamed);
+  for (std::size_t i = 0; i < shown; ++i) {
+    diagnostic.note(blamed[i]->source,
+                    fmt::format("this {} takes part", to_string(blamed[i]->kind)));
+  }
+  if (shown < blamed.size()) {
+    diagnostic.note(
+        further_text({blamed.begin() + static_cast<std::ptrdiff_t>(shown), blamed.end()}));
   }
   diagnostic.note(proof_remark(context, model, steps, core.origins));
   if (!core.is_minimal) diagnostic.note("stopped: not every one of them may be needed");

@@ -4,11 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
+#include <filesystem>
 #include <map>
 #include <sstream>
 
 #include "compiler/base/whole_number.h"
+#include "tools/cli/output.h"
 
 namespace parallax::tools {
 namespace {
@@ -143,6 +144,39 @@ std::string with_single_gaps(std::string text) {
   return text;
 }
 
+bool ends_in_one_of(const std::string& word, const std::vector<std::string>& endings) {
+  return std::any_of(endings.begin(), endings.end(),
+                     [&](const std::string& ending) { return word.ends_with('.' + ending); });
+}
+
+/// Is `word`, which stands behind the flag, the file that belongs behind its `=`? As a positional
+/// argument it would be one that is read.
+bool is_value_of(const Option& flag, const OptionTable& table, const std::string& word) {
+  if (word.empty() || word.front() == '-') return false;
+  if (ends_in_one_of(word, flag.endings)) return true;
+  for (const auto& option : table.options()) {
+    if (option.is_positional() && ends_in_one_of(word, option.endings)) return false;
+  }
+  std::error_code error;
+  return !std::filesystem::exists(word, error);
+}
+
+/// What is wrong with the file of a flag such as `--certify[=FILE]` that stands behind a blank; a
+/// blank ends such a flag, so the file would be taken for an argument. Empty: nothing.
+std::string detached_value(const OptionTable& table, int argc, char** argv) {
+  for (int i = 1; i + 1 < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--") break;
+    for (const auto& option : table.options()) {
+      const bool takes_file = option.is_flag && option.source == ValueSource::kFiles &&
+                              std::holds_alternative<std::string*>(option.target);
+      if (!takes_file || option.names != word || !is_value_of(option, table, argv[i + 1])) continue;
+      return fmt::format("the file of {0} stands behind `=`: write `{0}={1}`", word, argv[i + 1]);
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 ParsedLine parse_command_line(const Program& program, int argc, char** argv) {
@@ -179,13 +213,17 @@ ParsedLine parse_command_line(const Program& program, int argc, char** argv) {
     line.command = static_cast<std::size_t>(at - commands.begin());
   }
   declared.tell();
+  if (line.error.empty() && line.command) {
+    line.error = detached_value(*program.commands[*line.command], argc, argv);
+    if (!line.error.empty()) line.exit_code = 2;
+  }
   return line;
 }
 
 ParsedLine parse_and_print(const Program& program, int argc, char** argv) {
   auto line = parse_command_line(program, argc, argv);
-  std::fwrite(line.output.data(), 1, line.output.size(), stdout);
-  std::fwrite(line.messages.data(), 1, line.messages.size(), stderr);
+  print(line.output);
+  write_error(line.messages);
   return line;
 }
 

@@ -181,7 +181,7 @@ void add_certify_option(OptionTable& command, CertifyOption& option) {
             "Write a DRAT proof that there are no other traces, and the formula it refutes "
             "(FILE.cnf), and check it; the usual FILE is the model's name with .drat")
       .named_value("[=FILE]")
-      .file();
+      .file({"drat"});
 }
 
 void add_replay_options(OptionTable& command, ReplayTracesOptions& options) {
@@ -266,9 +266,9 @@ std::function<void(const harness::CampaignProgress&)> progress_on_terminal(
         progress.runs_per_s > 0
             ? static_cast<double>(progress.needed - progress.done) / progress.runs_per_s
             : 0.0;
-    write_error(fmt::format("\rtrace {}: {}/{} simulations, {:.1f}/s, about {:.0f} s left \x1b[K",
-                            progress.trace, progress.done, progress.needed, progress.runs_per_s,
-                            left));
+    show_progress(fmt::format("trace {}: {}/{} simulations, {:.1f}/s, about {:.0f} s left",
+                              progress.trace, progress.done, progress.needed, progress.runs_per_s,
+                              left));
   };
 }
 

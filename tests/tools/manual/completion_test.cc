@@ -114,7 +114,8 @@ TEST_CASE("bash: files where files are taken, and folders where folders are") {
   CHECK(bash.offers({"fmt", "d"}) == Words{"domain.e"});
   CHECK(bash.offers({"fmt", "domain.e", "sta"}) == Words{"start.e"});
   CHECK(bash.offers({"traces", "--plan", "f"}) == Words{"fetch.lisp"});
-  CHECK(bash.offers({"traces", "--certify", "=", "d"}) == Words{"domain.e"});
+  bash.cli.write("domain.drat", "");
+  CHECK(bash.offers({"traces", "--certify", "=", "d"}) == Words{"domain.drat"});
   CHECK(bash.offers({"traces", "--certify", "d"}) == Words{"domain.e"});
   CHECK(bash.offers({"replay", "s"}) == Words{"scripts", "sub"});
   CHECK(bash.offers({"run", "--out", "s"}) == Words{"scripts", "sub"});
