@@ -90,6 +90,7 @@ bool ClausePropagation::visit(Code falsified) {
 }
 
 void ClausePropagation::undo(std::size_t trail) {
+  if (trail_.size() > trail) undone_ += static_cast<std::int64_t>(trail_.size() - trail);
   while (trail_.size() > trail) {
     values_[trail_.back() >> 1U] = 0;
     trail_.pop_back();

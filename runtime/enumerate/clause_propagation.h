@@ -56,6 +56,8 @@ class ClausePropagation {
   Clause conflict() const { return conflict_; }
   Clause reason(Code c) const { return reasons_[c >> 1U]; }
   const std::vector<Code>& trail() const { return trail_; }
+  /// Literals set so far, those that were taken back included: a measure of work.
+  std::int64_t assignments() const { return undone_ + static_cast<std::int64_t>(trail_.size()); }
   const Code* literals(Clause clause) const { return &literals_[clause]; }
 
  private:
@@ -71,7 +73,8 @@ class ClausePropagation {
   std::vector<std::int8_t> values_;          // by variable: 1, 0, -1
   std::vector<Clause> reasons_;              // by variable
   std::vector<Code> trail_;
-  std::size_t head_ = 0;  // of the trail that is not propagated yet
+  std::int64_t undone_ = 0;  // literals that were set and taken back
+  std::size_t head_ = 0;     // of the trail that is not propagated yet
   Clause conflict_ = kNone;
 };
 

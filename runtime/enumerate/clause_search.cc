@@ -53,7 +53,7 @@ void ClauseSearch::begin(std::span<const Literal> assumptions) {
   }
 }
 
-ClauseSearch::Status ClauseSearch::next(std::int64_t budget) {
+ClauseSearch::Status ClauseSearch::next(std::int64_t conflicts, std::int64_t assignments) {
   if (is_found_) {
     leave_unprojected();
     is_found_ = false;
@@ -61,13 +61,14 @@ ClauseSearch::Status ClauseSearch::next(std::int64_t budget) {
   }
   while (!is_over_) {
     if (state_.propagate()) {
+      if (state_.assignments() >= assignments) return Status::kGaveUp;
       if (decide()) continue;
       is_found_ = true;
       return Status::kFound;
     }
     ++conflicts_;
     is_over_ = !resolve_conflict();
-    if (budget-- <= 0) return is_over_ ? Status::kNoMore : Status::kGaveUp;
+    if (conflicts-- <= 0) return is_over_ ? Status::kNoMore : Status::kGaveUp;
   }
   return Status::kNoMore;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -21,7 +22,7 @@ class ClauseSearch {
   enum class Status : std::uint8_t {
     kFound,   // value() has the next valuation
     kNoMore,  // every valuation was found
-    kGaveUp,  // more conflicts than the budget admits; a further call goes on
+    kGaveUp,  // the budget does not suffice; a further call goes on
   };
 
   /// Over the variables 1 .. `variables`. Valuations are told apart by `projected` and come in
@@ -33,10 +34,14 @@ class ClauseSearch {
 
   /// A new search, under these assumptions. What was learned stays.
   void begin(std::span<const Literal> assumptions);
-  Status next(std::int64_t budget);
+  /// Stops after `conflicts`, or as soon as assignments() has reached `assignments`.
+  Status next(std::int64_t conflicts,
+              std::int64_t assignments = std::numeric_limits<std::int64_t>::max());
   bool value(Literal literal) const { return state_.is_true(ClausePropagation::code(literal)); }
   /// Choices that led nowhere, of all searches.
   std::int64_t conflicts() const { return conflicts_; }
+  /// Literals set, of all searches.
+  std::int64_t assignments() const { return state_.assignments(); }
 
  private:
   using Code = ClausePropagation::Code;

@@ -200,16 +200,19 @@ SearchTraces::SearchTraces(const CompiledModel& model, Distinct distinct,
 std::optional<Trace> SearchTraces::next() {
   using Status = ClauseSearch::Status;
   if (exhausted_ || gave_up_) return std::nullopt;
-  auto left = conflicts_;
   auto status = Status::kGaveUp;
-  while (status == Status::kGaveUp && left > 0) {
+  paused_ = false;
+  while (status == Status::kGaveUp && spent_ < conflicts_ && !paused_) {
     if (stop_ != nullptr && stop_->load()) return std::nullopt;
-    status = search_.next(std::min(left, kSlice));
-    left -= kSlice;
+    const auto before = search_.conflicts();
+    status = search_.next(std::min(conflicts_ - spent_, kSlice), pause_at_);
+    spent_ += search_.conflicts() - before;
+    paused_ = status == Status::kGaveUp && work() >= pause_at_;
   }
   exhausted_ = status == Status::kNoMore;
-  gave_up_ = status == Status::kGaveUp;
+  gave_up_ = status == Status::kGaveUp && !paused_;
   if (status != Status::kFound) return std::nullopt;
+  spent_ = 0;
   const auto value = [&](Literal literal) { return search_.value(literal); };
   for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
     const auto clause = model_.clauses[c];

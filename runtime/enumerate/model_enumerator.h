@@ -101,6 +101,12 @@ class SearchTraces final : public TraceSource {
   bool exhausted() const override { return exhausted_; }
   /// Are there perhaps more traces, for which the budget does not suffice?
   bool gave_up() const { return gave_up_; }
+  /// Pauses before the next trace once work() has reached `assignments`.
+  void pause_at(std::int64_t assignments) { pause_at_ = assignments; }
+  /// next() has found nothing because work() has reached the pause; a later one may be set.
+  bool is_paused() const { return paused_; }
+  /// Literals set so far.
+  std::int64_t work() const { return search_.assignments(); }
   SourceStats stats() const override;
 
  private:
@@ -110,7 +116,9 @@ class SearchTraces final : public TraceSource {
   std::int64_t conflicts_;
   ClauseSearch search_;
   std::int64_t found_ = 0;
-  bool exhausted_ = false, gave_up_ = false;
+  std::int64_t spent_ = 0;  // conflicts since the last trace
+  std::int64_t pause_at_ = std::numeric_limits<std::int64_t>::max();
+  bool exhausted_ = false, gave_up_ = false, paused_ = false;
 };
 
 }  // namespace parallax::runtime

@@ -33,8 +33,12 @@ ModelTraces::ModelTraces(const CompiledModel& model, TraceQuery query)
         attempts_ = {{kFar, query.limits},
                      {1, kMediumGraph.within(query.limits)},
                      {0, kSmallGraph.within(query.limits)}};
-        attempt_graph();
-        if (source_ == nullptr) use_search(kConflicts);
+        use_search(kConflicts);
+        if (query.search_first > 0) {
+          search_->pause_at(query.search_first + 2 * std::int64_t{model.variable_count()});
+        } else {
+          search_->pause_at(0);
+        }
       }
       break;
     case Strategy::kSearch:
@@ -119,14 +123,18 @@ void ModelTraces::use_graph(const GraphLimits& limits) {
   // symmetry can make easy.
   auto without_solver = limits;
   without_solver.solver = given_ > 0 || !may_break_symmetry();
-  graph_.graph = TraceGraph::build(*graph_.layered, without_solver, query_.stop, remark_);
+  std::int64_t work = 0;
+  graph_.graph =
+      TraceGraph::build(*graph_.layered, without_solver, query_.stop, remark_, nullptr, &work);
+  graph_work_ = work;
   if (graph_.graph == nullptr && remark_ == TraceGraph::kWantsSolver) {
     (void)session();
     if (breaker_) {
       session().limit_conflicts(kEasy);
       if (has_trace() == SolveStatus::kUnsatisfiable) return;
     }
-    graph_.graph = TraceGraph::build(*graph_.layered, limits, query_.stop, remark_);
+    graph_.graph = TraceGraph::build(*graph_.layered, limits, query_.stop, remark_, nullptr, &work);
+    graph_work_ += work;
   }
   if (graph_.graph == nullptr) return;
   remark_ = GraphPaths::obstacle(*graph_.graph, model_);
@@ -168,7 +176,11 @@ void ModelTraces::attempt_graph() {
 /// The search met too many conflicts: by now the graph or a solver is better.
 void ModelTraces::leave_search() {
   search_ = nullptr;
-  if (!is_tried_) use_graph(kSmallGraph);
+  if (!is_tried_) {
+    const auto limits = attempts_.empty() ? kSmallGraph : attempts_.back().limits;
+    if (!attempts_.empty()) attempts_.pop_back();
+    use_graph(limits);
+  }
   if (paths_ != nullptr) return;
   if (given_ == 0) {
     use_blocking();
@@ -177,13 +189,28 @@ void ModelTraces::leave_search() {
   }
 }
 
+/// The search and the graph take turns, each with about the work that the other has done.
+bool ModelTraces::change_source() {
+  if (search_ == nullptr) return false;
+  const auto graphs_left = attempts_.size();
+  if (search_->gave_up()) {
+    leave_search();
+  } else if (search_->is_paused()) {
+    if (!attempts_.empty()) attempt_graph();
+  } else {
+    return false;
+  }
+  if (search_ != nullptr) {
+    search_->pause_at(attempts_.empty() ? std::numeric_limits<std::int64_t>::max()
+                                        : search_->work() + graph_work_);
+  }
+  return !query_.number_only || attempts_.size() == graphs_left;
+}
+
 std::optional<Trace> ModelTraces::next() {
   if (is_due()) attempt_graph();
   auto trace = source_->next();
-  if (!trace && search_ != nullptr && search_->gave_up()) {
-    leave_search();
-    trace = source_->next();
-  }
+  while (!trace && change_source()) trace = source_->next();
   if (trace) ++given_;
   return trace;
 }
@@ -191,10 +218,7 @@ std::optional<Trace> ModelTraces::next() {
 void ModelTraces::look_on() {
   if (is_due()) attempt_graph();
   source_->look_on();
-  if (search_ != nullptr && search_->gave_up()) {
-    leave_search();
-    source_->look_on();
-  }
+  while (change_source()) source_->look_on();
 }
 
 bool ModelTraces::print_next(const TraceFormat& format, std::string& out) {

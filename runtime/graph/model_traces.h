@@ -48,7 +48,13 @@ struct TraceQuery {
   /// The first trace may be looked for among representatives of orbits, where a search does not
   /// find it and no strategy is forced: that there is none is then said `by_symmetry`.
   bool breaks_symmetry = true;
+  /// Only the number is wanted: ModelTraces::next() also returns nothing after each attempt at a
+  /// graph, so that the caller can use the graph, or count in another way before the next one.
+  bool number_only = false;
   GraphLimits limits = {};
+  /// All traces are searched until so many literals have been set, and as many as two passes over
+  /// the whole model set, before a graph is tried: a few milliseconds.
+  std::int64_t search_first = 20'000;
   /// Threads for a question that is hard for a solver (CubeOptions::jobs); 0: it is not cut.
   std::int64_t jobs = 0;
   const std::atomic<bool>* stop = nullptr;
@@ -83,13 +89,16 @@ class ModelTraces final : public TraceSource {
   const std::string& refusal() const { return refusal_; }
   /// The graph, once there is one; it may count traces that it cannot list.
   const TraceGraph* graph() const { return graph_.graph.get(); }
+  /// Graphs that are still to be tried, larger ones later.
+  std::size_t graphs_left() const { return attempts_.size(); }
   /// The next trace becomes the one that `before` others precede, which is not before the one that
   /// is next. At once where there is a graph or the number of traces is known by components, else
   /// by finding what comes before.
   void seek(const mpz_class& before);
 
  private:
-  /// The graph is tried when so many traces have been given.
+  /// The graph is tried when so many traces have been given by a solver, or when the search has
+  /// cost as much as the attempts before.
   struct Attempt {
     std::int64_t given;
     GraphLimits limits;
@@ -108,7 +117,11 @@ class ModelTraces final : public TraceSource {
   bool use_components(ComponentEffort effort);
   void attempt_graph();
   void leave_search();
-  bool is_due() const { return !attempts_.empty() && attempts_.back().given == given_; }
+  /// A search that stops short makes room for what is better. False: it has not stopped short.
+  bool change_source();
+  bool is_due() const {
+    return search_ == nullptr && !attempts_.empty() && attempts_.back().given <= given_;
+  }
   /// Has the graph not been tried yet, or was it too large only?
   bool can_grow() const { return !is_tried_ || (graph_.layered && !graph_.graph); }
   void use_tree();
@@ -124,7 +137,8 @@ class ModelTraces final : public TraceSource {
   SearchTraces* search_ = nullptr;         // `source_`, if it is a search
   ComponentTraces* components_ = nullptr;  // `source_`, if it is that
   std::int64_t given_ = 0;
-  bool is_tried_ = false;  // there was an attempt at the graph
+  bool is_tried_ = false;        // there was an attempt at the graph
+  std::int64_t graph_work_ = 0;  // what the last one cost, as TraceGraph::work
   std::string refusal_;
   std::string remark_;  // why the graph was not used
 };

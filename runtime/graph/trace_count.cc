@@ -74,7 +74,9 @@ TraceCount count_traces(const CompiledModel& model, const TraceQuery& query) {
       count_components(model, query, ComponentEffort::kTrial, result)) {
     return result;
   }
-  ModelTraces traces(model, query);
+  auto of_all = query;
+  of_all.number_only = true;
+  ModelTraces traces(model, of_all);
   if (traces.graph() == nullptr && !traces.refusal().empty()) {
     result.refusal = traces.refusal();
     return result;
@@ -82,6 +84,8 @@ TraceCount count_traces(const CompiledModel& model, const TraceQuery& query) {
   const auto stopped = [&] { return query.stop != nullptr && query.stop->load(); };
   const bool chooses = query.strategy == Strategy::kAuto;
   OrbitGraphs orbits(model, query);
+  const auto graphs = traces.graphs_left();
+  std::size_t orbits_tried = 0;  // as many as graphs of the model itself were not enough
   while (true) {
     if (const auto* graph = traces.graph()) {
       result.stats = traces.stats();
@@ -91,18 +95,25 @@ TraceCount count_traces(const CompiledModel& model, const TraceQuery& query) {
     }
     if (stopped()) break;
     // Once a small graph was not enough, and before a large one.
-    if (chooses && query.breaks_symmetry && (result.count == 1 || result.count == kFar)) {
-      const auto& limits = result.count == 1 ? kMediumGraph : query.limits;
+    const auto graphs_left = traces.graphs_left();
+    const bool is_due =
+        chooses && result.count > 0 && graphs_left > 0 && orbits_tried < graphs - graphs_left;
+    if (is_due && query.breaks_symmetry) {
+      const auto& limits = orbits_tried == 0 ? kMediumGraph : query.limits;
       if (orbits.count(limits.within(query.limits), result)) return result;
     }
-    if (query.strategy == Strategy::kComponents || (chooses && result.count == kFar)) {
+    if (is_due) ++orbits_tried;
+    if (query.strategy == Strategy::kComponents || (is_due && orbits_tried == 2)) {
       if (count_components(model, query, ComponentEffort::kFull, result)) {
         result.stats.remark = traces.stats().remark;
         return result;
       }
     }
-    if (!traces.next()) break;
-    ++result.count;
+    if (traces.next()) {
+      ++result.count;
+    } else if (traces.graph() == nullptr && traces.graphs_left() == graphs_left) {
+      break;
+    }
   }
   result.complete = traces.exhausted();
   result.stats = traces.stats();

@@ -166,9 +166,11 @@ TraceGraph::TraceGraph(const LayeredModel& model, const GraphLimits& limits,
 
 std::unique_ptr<TraceGraph> TraceGraph::build(const LayeredModel& model, const GraphLimits& limits,
                                               const std::atomic<bool>* stop, std::string& reason,
-                                              const GraphOrbits* orbits) {
+                                              const GraphOrbits* orbits, std::int64_t* work) {
   auto graph = std::unique_ptr<TraceGraph>(new TraceGraph(model, limits, stop, orbits));
-  if (!graph->expand(reason)) return nullptr;
+  const bool is_whole = graph->expand(reason);
+  if (work != nullptr) *work = graph->work();
+  if (!is_whole) return nullptr;
   graph->orbits_ = nullptr;
   graph->count_back();
   return graph;
@@ -198,7 +200,8 @@ std::uint32_t TraceGraph::intern_events(Bits events) {
 }
 
 bool TraceGraph::expand(std::string& reason) {
-  auto moves = start_.moves({}, {}, {limits_.nodes, limits_.conflicts, limits_.solver});
+  const auto most = std::min(limits_.nodes, limits_.edges);
+  auto moves = start_.moves({}, {}, {most, limits_.conflicts, limits_.solver});
   if (!moves) return give_up(reason);
   const auto* orbits = orbits_ == nullptr ? nullptr : &orbits_->at_start;
   std::map<Bits, std::vector<Bits>> starts;
@@ -229,9 +232,10 @@ bool TraceGraph::expand_node(std::uint32_t step, std::uint32_t node, std::string
   std::map<std::pair<Bits, Bits>, std::vector<Bits>> ways;  // by events and observed
   const auto& from = *nodes_[node];
   for (const auto& hidden : from.hidden) {
-    auto moves = steps_[step]->moves(from.observed, hidden,
-                                     {limits_.edges, limits_.conflicts, limits_.solver});
+    auto moves = steps_[step]->moves(
+        from.observed, hidden, {limits_.edges - move_count_, limits_.conflicts, limits_.solver});
     if (!moves) return give_up(reason);
+    move_count_ += moves->size();
     for (auto& move : *moves) {
       ways[{std::move(move.events), std::move(move.observed)}].push_back(std::move(move.hidden));
     }
@@ -244,7 +248,7 @@ bool TraceGraph::expand_node(std::uint32_t step, std::uint32_t node, std::string
     edges.push_back({intern_events(way.first), intern({way.second, std::move(hidden)}, orbits)});
   }
   edge_count_ += edges.size();
-  return edge_count_ <= limits_.edges || give_up(reason);
+  return true;
 }
 
 bool TraceGraph::wants_solver() const {
@@ -279,6 +283,12 @@ const mpz_class& TraceGraph::completions(Timepoint t, std::uint32_t node) const 
 
 const std::vector<GraphEdge>& TraceGraph::edges(Timepoint t, std::uint32_t node) const {
   return edges_[model_.step_at[static_cast<std::size_t>(t)]].at(node);
+}
+
+std::int64_t TraceGraph::work() const {
+  auto work = start_.work();
+  for (const auto& step : steps_) work += step->work();
+  return work;
 }
 
 std::int64_t TraceGraph::solve_calls() const {

@@ -51,6 +51,8 @@ class StepSolver {
   std::optional<std::vector<Move>> moves(const Bits& observed, const Bits& hidden,
                                          const MoveLimits& limits);
   std::int64_t solve_calls() const { return solver_ == nullptr ? 0 : solver_->solve_calls(); }
+  /// Literals set by the search; a call of the solver counts as one whole valuation.
+  std::int64_t work() const { return search_.assignments() + solve_calls() * window_.variables; }
   /// Some state was left because no solver was to answer.
   bool wants_solver() const { return wants_solver_; }
 
@@ -94,8 +96,9 @@ struct GraphEdge {
 };
 
 struct GraphLimits {
-  std::size_t nodes = 2'000'000;                                      // of all layers together
-  std::size_t edges = 20'000'000;                                     // that are stored
+  std::size_t nodes = 2'000'000;  // of all layers together
+  /// Ways on from a state, each counted once for every valuation of what is hidden.
+  std::size_t edges = 20'000'000;
   std::int64_t conflicts = std::numeric_limits<std::int64_t>::max();  // of the search for them
   bool solver = true;  // states that a search does not settle are given to one
   /// The lesser of each.
@@ -117,10 +120,12 @@ class TraceGraph {
  public:
   /// None if the solver was stopped or a limit was hit; `reason` says which. `model` outlives the
   /// graph, `stop` may be null. With `orbits` a state stands for all of its orbit: the graph counts
-  /// as without, but its paths are no longer the traces.
+  /// as without, but its paths are no longer the traces. `work`, if given, receives what it cost
+  /// (StepSolver::work), also where there is none.
   static std::unique_ptr<TraceGraph> build(const LayeredModel& model, const GraphLimits& limits,
                                            const std::atomic<bool>* stop, std::string& reason,
-                                           const GraphOrbits* orbits = nullptr);
+                                           const GraphOrbits* orbits = nullptr,
+                                           std::int64_t* work = nullptr);
 
   /// The reason where a state needs a solver and the limits say that it has none.
   static constexpr std::string_view kWantsSolver = "a state has too many choices for a search";
@@ -143,6 +148,8 @@ class TraceGraph {
   std::size_t node_count() const { return nodes_.size(); }
   std::size_t edge_count() const { return edge_count_; }
   std::int64_t solve_calls() const;
+  /// What building it cost, as StepSolver::work.
+  std::int64_t work() const;
 
  private:
   TraceGraph(const LayeredModel& model, const GraphLimits& limits, const std::atomic<bool>* stop,
@@ -173,6 +180,7 @@ class TraceGraph {
   std::vector<Counts> completions_;                                               // by timepoint
   std::vector<std::uint32_t> starts_;
   std::size_t edge_count_ = 0;
+  std::size_t move_count_ = 0;  // as edges, for each hidden valuation
   bool determined_ = true;
   mpz_class total_;
 };

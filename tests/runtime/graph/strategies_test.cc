@@ -108,6 +108,13 @@ void compare(const compiler::CompiledModel& model, Distinct distinct, Seen& seen
       }
     }
   }
+  // The search hands over to a graph at once, or between two traces.
+  auto asked = query(Strategy::kAuto, distinct);
+  asked.search_first = 0;
+  CHECK(runtime::count_traces(model, asked).count == wanted.size());
+  asked.search_first = 40;
+  const auto found = lines(model, asked, false);
+  CHECK((distinct == Distinct::kAll ? found == wanted : observable(found) == observable(wanted)));
   for (const auto strategy : {Strategy::kAuto, Strategy::kComponents}) {
     const auto counted = runtime::count_traces(model, query(strategy, distinct));
     CHECK(counted.complete);

@@ -186,12 +186,48 @@ TEST_CASE("a limit that is hit leaves the graph for other ways, with the reason"
       "sort s\ns A, B, C\nfluent On(s)\nevent Press(s)\n[s,time] Initiates(Press(s),On(s),time).\n"
       "[s] !HoldsAt(On(s),0).\nrange time 0 3\n");
   runtime::TraceQuery query;
+  query.search_first = 0;
   query.limits = {.nodes = 3, .edges = 3};
   const auto counted = runtime::count_traces(model.compiled, query);
   CHECK(counted.complete);
   CHECK(counted.stats.strategy != "graph");
   CHECK(counted.count == 512);
   CHECK_FALSE(counted.stats.remark.empty());
+}
+
+/// An event is noted by a predicate that nothing determines where the event does not happen.
+TextModel free_predicate(int levels) {
+  return TextModel("sort level: integer\nrange level 0 " + std::to_string(levels) +
+                   "\nsort tin\ntin Red\npredicate Noted(event,time)\nfluent Mark(level)\n"
+                   "event Ring()\nevent Set(level)\nevent Push(tin)\nrange time 0 1\n"
+                   "[time] !Happens(Push(Red),time) -> Happens(Ring(),time).\n"
+                   "[time,level,event] Happens(event,time) -> "
+                   "!(Noted(event,0) -> HoldsAt(Mark(level),time)).\n");
+}
+
+TEST_CASE("hidden valuations count as ways on, so that a limit bounds the work on a graph") {
+  const auto model = free_predicate(8);
+  const auto split = runtime::split_into_windows(model.compiled, runtime::Distinct::kObservable,
+                                                 runtime::FixedTies::kCarried);
+  REQUIRE(std::holds_alternative<runtime::LayeredModel>(split));
+  const auto& layered = std::get<runtime::LayeredModel>(split);
+  std::string reason;
+  std::int64_t work = 0;
+  runtime::GraphLimits limits;
+  limits.edges = 500;
+  CHECK(runtime::TraceGraph::build(layered, limits, nullptr, reason, nullptr, &work) == nullptr);
+  CHECK(work > 0);
+  CHECK(work < 500 * 4 * std::int64_t{model.compiled.variable_count()});
+}
+
+TEST_CASE("a few traces of a model with many hidden valuations are searched, not left to a graph") {
+  const auto model = free_predicate(4);
+  const auto counted = runtime::count_traces(model.compiled, {});
+  CHECK(counted.complete);
+  CHECK(counted.stats.strategy == "search");
+  runtime::TraceQuery blocking;
+  blocking.strategy = runtime::Strategy::kBlocking;
+  CHECK(counted.count == runtime::count_traces(model.compiled, blocking).count);
 }
 
 TEST_CASE("a raised stop flag ends the count early and says so") {
