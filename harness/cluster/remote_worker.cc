@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "compiler/base/clock_time.h"
 #include "compiler/base/subprocess.h"
 
 namespace parallax::harness {
@@ -98,7 +99,7 @@ bool RemoteWorker::shake_hands() {
 }
 
 void RemoteWorker::pause(double seconds) const {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  const auto end = base::from_now(seconds);
   while (!interrupted_ && std::chrono::steady_clock::now() < end) {
     std::this_thread::sleep_for(kPauseSlice);
   }

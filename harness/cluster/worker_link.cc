@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <utility>
 
+#include "compiler/base/clock_time.h"
 #include "compiler/base/utf8.h"
 #include "harness/simulator/error_tail.h"
 #include "harness/simulator/worker.h"
@@ -12,14 +12,7 @@
 namespace parallax::harness {
 namespace {
 
-using LinkClock = ChildProcess::Clock;
-
 constexpr double kEndGraceS = 0.2;  // for its own end, which says more than a signal of ours
-
-LinkClock::time_point from_now(double seconds) {
-  return LinkClock::now() +
-         std::chrono::duration_cast<LinkClock::duration>(std::chrono::duration<double>(seconds));
-}
 
 }  // namespace
 
@@ -29,7 +22,7 @@ WorkerLink::WorkerLink(const std::vector<std::string>& command, Limits limits,
 
 std::variant<ProgramIdentity, std::string> WorkerLink::greet() {
   if (!child_.start_error().empty()) return child_.start_error();
-  const auto deadline = from_now(limits_.start_s);
+  const auto deadline = base::from_now(limits_.start_s);
   std::size_t bytes = 0;
   for (std::string line;;) {
     switch (child_.read_line(line, deadline, kMostBannerBytes)) {
@@ -59,12 +52,12 @@ std::variant<ProgramIdentity, std::string> WorkerLink::greet() {
 
 std::variant<ReplyBody, std::string> WorkerLink::ask(RequestBody body) {
   const Request request{next_id_++, std::move(body)};
-  if (!child_.write_line(encode_request(request), from_now(limits_.silence_s))) {
+  if (!child_.write_line(encode_request(request), base::from_now(limits_.silence_s))) {
     return std::string("it took no request");
   }
   for (std::string line;;) {
     // Each sign of life starts the wait anew: how long a request may take the worker knows.
-    switch (child_.read_line(line, from_now(limits_.silence_s), kMaxLineBytes)) {
+    switch (child_.read_line(line, base::from_now(limits_.silence_s), kMaxLineBytes)) {
       case ChildProcess::Wait::kLine:
         break;
       case ChildProcess::Wait::kTimeout:
@@ -88,7 +81,7 @@ std::variant<ReplyBody, std::string> WorkerLink::ask(RequestBody body) {
 
 std::string WorkerLink::lose(std::string reason) {
   if (!child_.start_error().empty()) return reason;
-  reason += fmt::format(" ({})", child_.end(from_now(kEndGraceS)));
+  reason += fmt::format(" ({})", child_.end(base::from_now(kEndGraceS)));
   return reason + error_tail_words(child_.error_tail());
 }
 

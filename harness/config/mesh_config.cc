@@ -30,8 +30,9 @@ YamlNode scalar_at(const base::SourceRange& range, double value) {
 
 class MeshAdder {
  public:
-  MeshAdder(const base::PathGate& gate, base::SourceFiles& files, base::DiagnosticSink& sink)
-      : gate_(gate), files_(files), sink_(sink) {}
+  MeshAdder(const base::PathGate& gate, base::SourceFiles& files, base::DiagnosticSink& sink,
+            const std::atomic<bool>* stop)
+      : gate_(gate), files_(files), sink_(sink), stop_(stop) {}
 
   /// All forms of a body.
   void replace_in(YamlNode& body) {
@@ -121,8 +122,8 @@ class MeshAdder {
                   "libassimp-dev and libqhull-dev");
       return nullptr;
     }
-    const auto key =
-        std::tuple(path.string(), wanted.scale.x(), wanted.scale.y(), wanted.scale.z());
+    const auto key = std::tuple(base::real_path(path).string(), wanted.scale.x(), wanted.scale.y(),
+                                wanted.scale.z());
     auto found = known_.find(key);
     if (found == known_.end()) {
       if (known_.size() == kMaxMeshes) {
@@ -140,10 +141,11 @@ class MeshAdder {
       auto extension = path.extension().string().substr(1);
       std::transform(extension.begin(), extension.end(), extension.begin(),
                      [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-      found = known_.emplace(key, mesh_corners(text.str(), extension, wanted.scale)).first;
+      found = known_.emplace(key, mesh_corners(text.str(), extension, wanted.scale, stop_)).first;
       note_loss(wanted, path.filename().string(), found->second);
     }
     if (found->second.fault) {
+      if (tell_if_stopped(stop_, wanted.range, sink_)) return nullptr;
       return fault(fmt::format("the mesh `{}` {}", wanted.file, *found->second.fault));
     }
     return &found->second;
@@ -159,6 +161,7 @@ class MeshAdder {
   const base::PathGate& gate_;
   base::SourceFiles& files_;
   base::DiagnosticSink& sink_;
+  const std::atomic<bool>* stop_;
   std::map<std::tuple<std::string, double, double, double>, MeshCorners> known_;
   std::map<std::string, Lost> lost_;
 };
@@ -166,9 +169,9 @@ class MeshAdder {
 }  // namespace
 
 bool add_meshes(YamlNode& root, const base::PathGate& gate, base::SourceFiles& files,
-                base::DiagnosticSink& sink) {
+                base::DiagnosticSink& sink, const std::atomic<bool>* stop) {
   const auto errors_before = sink.error_count();
-  MeshAdder adder(gate, files, sink);
+  MeshAdder adder(gate, files, sink, stop);
   if (!root.is_map()) return true;
   for (YamlEntry& world : root.entries) {
     if (world.key != Key::kWorld || !world.value.is_map()) continue;

@@ -10,6 +10,7 @@
 
 #include "compiler/base/codes/scenarios.h"
 #include "compiler/base/file_io.h"
+#include "harness/config/load_limits.h"
 #include "harness/config/sections.h"
 #include "harness/engine/world_check.h"
 #include "harness/region/area.h"
@@ -354,8 +355,13 @@ bool may_be_case(const std::filesystem::path& path, bool allow_outside) {
 
 base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,
                                      base::DiagnosticSink& sink, bool allow_outside) {
+  return load_scenario(path, files, sink, LoadLimits{allow_outside, nullptr});
+}
+
+base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,
+                                     base::DiagnosticSink& sink, const LoadLimits& limits) {
   const auto errors_before = sink.error_count();
-  base::PathGate gate(allow_outside);
+  base::PathGate gate(limits.allow_outside);
   gate.admit_beside(path);
   Scenario scenario;
   scenario.file = path;
@@ -363,7 +369,8 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
   // Files are registered in order of loading, so the next one is the scenario itself.
   scenario.source = base::FileId(static_cast<std::uint32_t>(files.size()));
   auto root = load_yaml(path, gate, files, sink);
-  if (!root || !add_imported(*root, gate, files, sink) || !add_meshes(*root, gate, files, sink)) {
+  if (!root || !add_imported(*root, gate, files, sink, limits.stop) ||
+      !add_meshes(*root, gate, files, sink, limits.stop)) {
     return sink.already_reported();
   }
   ScenarioReader(*root, gate, files, sink).read(scenario);

@@ -3,6 +3,7 @@
 // Only harness/config/*.cc include this header.
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -33,12 +34,17 @@ WorldSpec read_world(const YamlNode& node, EngineKind engine, base::DiagnosticSi
 /// Puts what the `sdf`, `urdf` or `mjcf` of `world` says under the other keys of `world`, each
 /// value with its place in that file. False after an error was reported.
 bool add_imported(YamlNode& root, const base::PathGate& gate, base::SourceFiles& files,
-                  base::DiagnosticSink& sink);
+                  base::DiagnosticSink& sink, const std::atomic<bool>* stop = nullptr);
+
+/// Of a file that could not be read: reports kLimitReached in the place of what is wrong with it
+/// where that is only that the program is to end.
+bool tell_if_stopped(const std::atomic<bool>* stop, const base::SourceRange& place,
+                     base::DiagnosticSink& sink);
 
 /// Puts `hull: [CORNER, ...]` in the place of every `mesh` of a body of `world`: the corners of the
 /// convex hull of what is in its file. False after an error was reported.
 bool add_meshes(YamlNode& root, const base::PathGate& gate, base::SourceFiles& files,
-                base::DiagnosticSink& sink);
+                base::DiagnosticSink& sink, const std::atomic<bool>* stop = nullptr);
 
 /// One family of `regions`, as written.
 struct RegionSection {

@@ -6,6 +6,7 @@
 #include <span>
 #include <system_error>
 
+#include "compiler/base/codes/files.h"
 #include "compiler/base/codes/scenarios.h"
 #include "compiler/base/file_io.h"
 #include "harness/config/sections.h"
@@ -237,8 +238,10 @@ constexpr std::array<ImportFormat, 3> kFormats = {
 class WorldImporter {
  public:
   WorldImporter(YamlNode& world, const base::PathGate& gate, base::SourceFiles& files,
-                base::DiagnosticSink& sink)
-      : world_(world), gate_(gate), files_(files), sink_(sink) {}
+                base::DiagnosticSink& sink, const std::atomic<bool>* stop)
+      : world_(world), gate_(gate), files_(files), sink_(sink) {
+    input_.stop = stop;
+  }
 
   bool run() {
     const auto errors_before = sink_.error_count();
@@ -280,6 +283,7 @@ class WorldImporter {
     const ImportedWorld made = format_->read(input_);
     for (const std::string& one : made.files) files_.note_input(one);
     if (made.fault) {
+      if (tell_if_stopped(input_.stop, file_range_, sink_)) return false;
       sink_.error(codes::kBadImport, range_at(made.fault->offset), made.fault->message);
       return false;
     }
@@ -461,12 +465,19 @@ class WorldImporter {
 
 }  // namespace
 
+bool tell_if_stopped(const std::atomic<bool>* stop, const base::SourceRange& place,
+                     base::DiagnosticSink& sink) {
+  if (stop == nullptr || !stop->load()) return false;
+  sink.error(codes::kLimitReached, place, "--time-limit, or a signal,");
+  return true;
+}
+
 bool add_imported(YamlNode& root, const base::PathGate& gate, base::SourceFiles& files,
-                  base::DiagnosticSink& sink) {
+                  base::DiagnosticSink& sink, const std::atomic<bool>* stop) {
   if (!root.is_map()) return true;
   for (YamlEntry& entry : root.entries) {
     if (entry.key == Key::kWorld && entry.value.is_map()) {
-      return WorldImporter(entry.value, gate, files, sink).run();
+      return WorldImporter(entry.value, gate, files, sink, stop).run();
     }
   }
   return true;

@@ -4,17 +4,13 @@
 
 #include <utility>
 
+#include "compiler/base/clock_time.h"
 #include "harness/simulator/error_tail.h"
 
 namespace parallax::harness {
 namespace {
 
 using ProbeClock = ChildProcess::Clock;
-
-ProbeClock::time_point in_seconds(double seconds) {
-  return ProbeClock::now() +
-         std::chrono::duration_cast<ProbeClock::duration>(std::chrono::duration<double>(seconds));
-}
 
 std::string_view method_of(const RequestBody& body) {
   static constexpr std::string_view kMethods[] = {"hello", "reset",    "act",           "observe",
@@ -49,7 +45,7 @@ ProtocolProbe::ProtocolProbe(const ProcessOptions& limits) : limits_(limits) {
 
 void ProtocolProbe::lose(std::string why) {
   constexpr double kGraceS = 0.2;
-  const auto ending = child_->end(in_seconds(kGraceS));
+  const auto ending = child_->end(base::from_now(kGraceS));
   trouble_ = std::move(why) + fmt::format(" ({})", ending);
   trouble_ += error_tail_words(child_->error_tail());
   child_.reset();
@@ -63,7 +59,7 @@ std::optional<ReplyBody> ProtocolProbe::ask(RequestBody body, double timeout_s,
   auto line = encode_request(request);
   if (unknown_field) line.insert(1, R"("x-unknown":{"of":[1,"a later version"]},)");
   const auto begun = ProbeClock::now();
-  const auto deadline = in_seconds(timeout_s);
+  const auto deadline = base::from_now(timeout_s);
   if (!child_->write_line(line, deadline)) {
     lose(fmt::format("it did not take `{}`", name));
     return std::nullopt;
@@ -107,7 +103,7 @@ std::optional<ReplyBody> ProtocolProbe::ask(RequestBody body, double timeout_s,
 std::optional<std::string> ProtocolProbe::ended_by_itself(double timeout_s) {
   if (!child_) return std::nullopt;
   const auto begun = ProbeClock::now();
-  const auto deadline = in_seconds(timeout_s);
+  const auto deadline = base::from_now(timeout_s);
   auto ending = child_->end(deadline);
   wall_s_ = std::chrono::duration<double>(ProbeClock::now() - begun).count();
   child_.reset();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -28,6 +29,7 @@ struct ImportInput {
   /// where it is not to be had.
   std::function<std::optional<std::string>(const std::string& uri, const std::string& from)>
       find_mesh = {};
+  const std::atomic<bool>* stop = nullptr;  // ends processes that read it (limited_child.h)
 };
 
 /// A mesh in the place of a shape, whose pose is that of the mesh.

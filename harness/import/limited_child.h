@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -7,8 +8,8 @@
 
 namespace parallax::harness {
 
-/// kTooLong: it takes too long, or has too much to say.
-enum class ChildEnd : std::uint8_t { kAnswered, kNotStarted, kTooLong, kCrashed };
+/// kTooLong: it takes too long, or has too much to say. kStopped: the stop flag was raised.
+enum class ChildEnd : std::uint8_t { kAnswered, kNotStarted, kTooLong, kCrashed, kStopped };
 
 struct ChildAnswer {
   ChildEnd end = ChildEnd::kAnswered;
@@ -17,8 +18,9 @@ struct ChildAnswer {
 
 /// What `work` gives in a process of its own, with 30 s and 3 GiB, in which nothing is said and
 /// nothing lasts: what a library makes of a hostile file does no harm here. With `opens_files`
-/// false the process can open none. `work` should throw nothing; what it throws is a crash.
+/// false the process can open none. `work` should throw nothing; what it throws is a crash. The
+/// process ends with the thread that called, however that ends, and when `stop` is raised.
 ChildAnswer answer_of_child(const std::function<std::string()>& work, std::size_t most_bytes,
-                            bool opens_files);
+                            bool opens_files, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace parallax::harness

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -50,9 +51,9 @@ bool is_mesh_format(const std::filesystem::path& path);
 bool reads_meshes();
 
 /// The file is read in a process of its own, with limits: what the library makes of a hostile one
-/// does no harm here.
+/// does no harm here. `stop` ends it early (limited_child.h).
 MeshCorners mesh_corners(const std::string& text, const std::string& extension,
-                         const Eigen::Vector3d& scale);
+                         const Eigen::Vector3d& scale, const std::atomic<bool>* stop = nullptr);
 MadeHull hull_of(const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace parallax::harness

@@ -83,7 +83,7 @@ bool is_mesh_format(const std::filesystem::path& path) {
 bool reads_meshes() { return functions() != nullptr; }
 
 MeshCorners mesh_corners(const std::string& text, const std::string& extension,
-                         const Eigen::Vector3d& scale) {
+                         const Eigen::Vector3d& scale, const std::atomic<bool>* stop) {
   if (!reads_meshes()) return faulty("cannot be read: the module for meshes is not there");
   const auto work = [&] {
     try {
@@ -92,7 +92,7 @@ MeshCorners mesh_corners(const std::string& text, const std::string& extension,
       return answer_of(faulty("cannot be read: it asks for too much memory, or is damaged"));
     }
   };
-  const ChildAnswer answer = answer_of_child(work, kMostAnswer, true);
+  const ChildAnswer answer = answer_of_child(work, kMostAnswer, true, stop);
   switch (answer.end) {
     case ChildEnd::kAnswered:
       return parsed(answer.bytes);
@@ -100,6 +100,8 @@ MeshCorners mesh_corners(const std::string& text, const std::string& extension,
       return faulty("cannot be read: no process can be started");
     case ChildEnd::kTooLong:
       return faulty("cannot be read: it takes too long");
+    case ChildEnd::kStopped:
+      return faulty("was not read to its end: the program is to end");
     case ChildEnd::kCrashed:
       break;
   }

@@ -281,7 +281,8 @@ class MjcfImporter {
     if (found != hulls_.end()) return found->second;
     const MjcfMesh& read = model_.meshes[mesh];
     const std::string& name = read.name;
-    const MeshCorners made = mesh_corners(stl_of(read), "stl", Eigen::Vector3d::Ones());
+    const MeshCorners made =
+        mesh_corners(stl_of(read), "stl", Eigen::Vector3d::Ones(), input_.stop);
     if (made.fault) fault(offset, fmt::format("the mesh `{}` {}", name, *made.fault));
     for (const MeshLoss& loss : losses_of(made, name)) leave(loss.what, loss.of, offset);
     return hulls_.emplace(mesh, made.corners).first->second;
@@ -382,7 +383,7 @@ ImportedWorld import_mjcf(const ImportInput& input) {
   world.files = text.read;
   world.fault = text.fault;
   if (world.fault) return world;
-  const MjcfModel model = read_mjcf(text.files);
+  const MjcfModel model = read_mjcf(text.files, input.stop);
   MjcfImporter(input, text, model, world).run();
   if (!world.fault) {
     world.left_out.insert(world.left_out.end(), text.left_out.begin(), text.left_out.end());

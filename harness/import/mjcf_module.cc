@@ -34,7 +34,7 @@ MjcfModel no_model(std::string why) {
 
 bool reads_mjcf() { return loaded_mjcf_reader() != nullptr; }
 
-MjcfModel read_mjcf(const std::vector<MjcfFile>& files) {
+MjcfModel read_mjcf(const std::vector<MjcfFile>& files, const std::atomic<bool>* stop) {
   ReadMjcf* const read = loaded_mjcf_reader();
   PARALLAX_REQUIRE(read != nullptr, "reads_mjcf()");
   const auto work = [&] {
@@ -44,7 +44,7 @@ MjcfModel read_mjcf(const std::vector<MjcfFile>& files) {
     }
     return bytes_of(model);
   };
-  const ChildAnswer answer = answer_of_child(work, kMaxMjcfAnswer, false);
+  const ChildAnswer answer = answer_of_child(work, kMaxMjcfAnswer, false, stop);
   switch (answer.end) {
     case ChildEnd::kAnswered:
       break;
@@ -52,6 +52,8 @@ MjcfModel read_mjcf(const std::vector<MjcfFile>& files) {
       return no_model("no process can be started to read it");
     case ChildEnd::kTooLong:
       return no_model("it takes too long to read");
+    case ChildEnd::kStopped:
+      return no_model("it was not read to its end: the program is to end");
     case ChildEnd::kCrashed:
       return no_model("MuJoCo's reader crashed on it");
   }

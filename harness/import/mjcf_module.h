@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,6 @@ struct MjcfFile {
 using ReadMjcf = bool(const char* version, const std::vector<MjcfFile>& files, MjcfModel& model);
 
 /// What the module says, in a process with limits (limited_child.h).
-MjcfModel read_mjcf(const std::vector<MjcfFile>& files);
+MjcfModel read_mjcf(const std::vector<MjcfFile>& files, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace parallax::harness

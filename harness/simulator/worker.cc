@@ -15,6 +15,7 @@
 #include <thread>
 #include <utility>
 
+#include "compiler/base/clock_time.h"
 #include "harness/simulator/protocol.h"
 
 namespace parallax::harness {
@@ -134,8 +135,7 @@ class Pulse {
   }
 
   void run() {
-    const auto interval =
-        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options_.beat_s));
+    const auto interval = base::clock_duration(options_.beat_s);
     std::unique_lock lock(mutex_);
     for (;;) {
       changed_.wait(lock, [this] { return request_ != kIdle; });

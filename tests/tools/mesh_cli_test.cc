@@ -1,10 +1,14 @@
 // A thing that is a mesh: gripped, carried, put down, drawn, recorded, shown.
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/random.h"
 #include "tests/tools/cli_fixture.h"
 #include "tests/tools/cli_json.h"
 
@@ -58,6 +62,29 @@ TEST_CASE("a mesh is fetched as its box would be, and pictures, reports and expo
   REQUIRE(cli.parallax({"draw", "scenario.yaml", "-o", "scene.svg"}).code == 0);
   CHECK(with_mesh != cli.read("scene.svg"));
   CHECK(with_mesh.size() > cli.read("scene.svg").size());
+}
+
+TEST_CASE("a mesh that takes long to read ends with the limit of time, and is not blamed") {
+  const CliFixture cli;
+  if (no_meshes(cli)) return;
+  // Points on a sphere: each is a corner of the hull.
+  Random random(5);
+  std::string text;
+  constexpr int kPoints = 120'000;
+  for (int i = 0; i < kPoints; ++i) {
+    const double z = 1e-6 * random.below(2'000'001) - 1.0, t = 1e-6 * random.below(6'283'186);
+    const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
+    text += fmt::format("v {:.9f} {:.9f} {:.9f}\n", r * std::cos(t), r * std::sin(t), z);
+  }
+  for (int i = 1; i + 2 <= kPoints; ++i) text += fmt::format("f {} {} {}\n", i, i + 1, i + 2);
+  cli.write("sphere.obj", text);
+  cli.replace("world.yaml", "size_m: [0.07, 0.07, 0.07]", "mesh: {file: sphere.obj, scale: 0.035}");
+  const auto result = cli.parallax({"check", "scenario.yaml", "--time-limit", "0.2"});
+  CAPTURE(result.err);
+  CHECK(result.code == 4);
+  CHECK(result.err.find("error[E0008]: the limit --time-limit, or a signal, ended the run") !=
+        std::string::npos);
+  CHECK(result.err.find("E5143") == std::string::npos);
 }
 
 TEST_CASE("what a mesh cannot be is one located message, and exit code 3") {

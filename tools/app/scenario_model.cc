@@ -15,6 +15,7 @@
 #include "compiler/syntax/lexer.h"
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/replay.h"
+#include "harness/config/load_limits.h"
 #include "harness/discrete/model_simulator.h"
 #include "tools/app/edited_scenario.h"
 #include "tools/app/file_kind.h"
@@ -213,7 +214,9 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
     return sink.already_reported();
   }
   const auto first = context.files().size();  // what was read before is no part of it
-  auto scenario = harness::load_scenario(path, context.files(), sink, context.form().allow_outside);
+  auto scenario =
+      harness::load_scenario(path, context.files(), sink,
+                             harness::LoadLimits{context.form().allow_outside, &context.stop()});
   if (!scenario) return sink.already_reported();
   auto scenario_hash = harness::hash_of_sources(context.files(), first);
   const RegionLocator locator(scenario->mapping->regions());
@@ -290,8 +293,9 @@ base::Status add_plan(const ModelOptions& options, std::optional<harness::Scenar
   auto& sink = context.sink();
   static const harness::RegionMap kNowhere{harness::RegionSet()};
   if (!options.regions.empty()) {
-    auto scenario = harness::load_scenario(options.regions, context.files(), sink,
-                                           context.form().allow_outside);
+    auto scenario =
+        harness::load_scenario(options.regions, context.files(), sink,
+                               harness::LoadLimits{context.form().allow_outside, &context.stop()});
     if (!scenario) return sink.already_reported();
     regions = *std::move(scenario);
   }

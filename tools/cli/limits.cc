@@ -7,6 +7,7 @@
 #include <csignal>
 #include <new>
 
+#include "compiler/base/clock_time.h"
 #include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 
@@ -69,7 +70,7 @@ LimitGuard::LimitGuard(const CommonOptions& options) {
   if (options.memory_limit_mb > 0) {
     g_options = &options;
     std::set_new_handler(on_out_of_memory);
-    const auto bytes = static_cast<rlim_t>(options.memory_limit_mb) << 20U;
+    const rlim_t bytes = base::bytes_of_mb(options.memory_limit_mb);
     const rlimit limit{bytes, bytes};
     setrlimit(RLIMIT_AS, &limit);
   }
@@ -92,7 +93,7 @@ bool LimitGuard::time_is_over() const {
 
 void LimitGuard::watch(const CommonOptions& options) {
   std::unique_lock lock(mutex_);
-  const auto limit = std::chrono::duration<double>(options.time_limit_s);
+  const auto limit = base::clock_duration(options.time_limit_s);
   if (done_changed_.wait_for(lock, limit, [this] { return done_; })) return;
   over_ = true;
   stop_flag().store(true);

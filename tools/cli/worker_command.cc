@@ -9,6 +9,7 @@
 #include "compiler/base/codes/files.h"
 #include "harness/campaign/campaign.h"
 #include "harness/cluster/program_identity.h"
+#include "harness/config/load_limits.h"
 #include "harness/config/scenario.h"
 #include "harness/robot/ode_simulator.h"
 #include "harness/simulator/worker.h"
@@ -68,8 +69,9 @@ int serve_scenario(const WorkerOptions& options, Invocation& invocation) {
         fmt::format("--folder: it cannot be entered here: {}", std::strerror(errno)));
     return 0;
   }
-  auto scenario = harness::load_scenario(options.scenario, invocation.files(), invocation.sink(),
-                                         invocation.form().allow_outside);
+  auto scenario = harness::load_scenario(
+      options.scenario, invocation.files(), invocation.sink(),
+      harness::LoadLimits{invocation.form().allow_outside, &invocation.stop()});
   if (!scenario) return 0;
   // Who started us read the same file a moment ago; an edit in between must not go unseen.
   const auto hash = harness::hash_of_sources(invocation.files());

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "compiler/base/clock_time.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "compiler/base/path_gate.h"
@@ -233,7 +234,7 @@ void run_traces(const harness::ManifestCase& one, const fs::path& manifest,
                 const RunnerOptions& options, Footprint& footprint, const std::atomic<bool>& stop,
                 CaseResult& result) {
   std::optional<std::uint64_t> cpu_limit_s;
-  if (options.ends_early) cpu_limit_s = static_cast<std::uint64_t>(std::ceil(one.time_limit_s));
+  if (options.ends_early) cpu_limit_s = base::whole_seconds(one.time_limit_s);
   for (const auto* properties : {&one.expect.holds, &one.expect.violated}) {
     const bool holds = properties == &one.expect.holds;
     for (const auto& property : *properties) {

@@ -2,9 +2,12 @@
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
@@ -30,6 +33,41 @@ TEST_CASE("a process with limits answers, and how it ends otherwise is told") {
   CHECK(answer_of_child([]() -> std::string { ::_exit(0); }, kMost, true).bytes.empty());
   CHECK(answer_of_child([] { return std::string(100'000'000, 'x'); }, kMost, true).end ==
         ChildEnd::kTooLong);
+}
+
+TEST_CASE("it ends with whoever asked, and when it is to stop") {
+  // A process asks, says the number of the process that works for it, and is killed.
+  int ends[2];
+  REQUIRE(::pipe2(ends, O_CLOEXEC) == 0);
+  const pid_t asking = ::fork();
+  REQUIRE(asking >= 0);
+  if (asking == 0) {
+    const auto working = [&]() -> std::string {
+      const pid_t self = ::getpid();
+      if (::write(ends[1], &self, sizeof(self)) != sizeof(self)) ::_exit(1);
+      for (;;) ::pause();
+    };
+    (void)answer_of_child(working, 100, true);
+    ::_exit(0);
+  }
+  pid_t worker = 0;
+  REQUIRE(::read(ends[0], &worker, sizeof(worker)) == sizeof(worker));
+  ::close(ends[1]);
+  CHECK(::kill(worker, 0) == 0);
+  ::kill(asking, SIGKILL);
+  ::waitpid(asking, nullptr, 0);
+  // Its end of the pipe is the last one: that closes when it has ended.
+  char none = 0;
+  CHECK(::read(ends[0], &none, 1) == 0);
+  ::close(ends[0]);
+
+  std::atomic<bool> stop{true};
+  const auto waiting = []() -> std::string {
+    for (;;) ::pause();
+  };
+  CHECK(answer_of_child(waiting, 100, true, &stop).end == ChildEnd::kStopped);
+  stop = false;
+  CHECK(answer_of_child([] { return std::string("fine"); }, 100, true, &stop).bytes == "fine");
 }
 
 TEST_CASE("it opens no file where it may not, and writes to none") {

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+
+#include "harness/config/scenario.h"
+
+namespace parallax::harness {
+
+/// What bounds the reading of a scenario.
+struct LoadLimits {
+  bool allow_outside = false;  // as in the load_scenario of scenario.h
+  /// Ends the processes that read meshes and worlds of other formats when it is raised; what they
+  /// were reading is then reported as not to be read.
+  const std::atomic<bool>* stop = nullptr;
+};
+
+base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,
+                                     base::DiagnosticSink& sink, const LoadLimits& limits);
+
+}  // namespace parallax::harness
