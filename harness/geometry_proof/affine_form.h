@@ -8,6 +8,7 @@ namespace parallax::harness {
 /// A closed interval that is certain to contain a value.
 struct Bounds1 {
   double lower = 0.0, upper = 0.0;
+  friend bool operator==(const Bounds1&, const Bounds1&) = default;
 };
 
 /// A value that depends on variables: somewhere in `center + sum(slope_i e_i) + [-rest, rest]` for

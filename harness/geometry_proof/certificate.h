@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,7 +30,7 @@ struct ActionCertificate {
 /// What was proved of a trace, and all that it takes to check it again.
 struct Certificate {
   std::string scenario;
-  std::string scenario_hash;  // over all its texts; empty in certificates that do not say
+  std::string scenario_hash;  // over all its texts
   std::int64_t trace = 0;
   std::vector<std::string> variables;  // that are drawn
   StartBox region;
@@ -42,24 +43,57 @@ struct Certificate {
 std::vector<ActionCertificate> certify(const std::vector<ProvableAction>& actions,
                                        const ProofLimits& limits);
 
+/// Share of the region that a box is.
+double volume_share(const StartBox& box, const StartBox& region);
+/// Adds a box's share of the region to what its verdict has.
+void add_share(const DecidedBox& box, const StartBox& region, TestCertificate& test);
+
 /// A certificate as JSON, and back; a text that says what is wrong with one that cannot be read.
-/// Shares are read off the boxes.
+/// Every member is required. Numbers that follow from others are held against them: the shares of
+/// a test, and how many boxes were examined, against its boxes.
 std::string certificate_json(const Certificate& certificate);
 std::optional<std::string> read_certificate(std::string_view text, Certificate& certificate);
 
 /// Do the boxes fill the region without overlapping, having come from halving it?
 bool fill(const std::vector<DecidedBox>& boxes, const StartBox& region);
 
-/// A certificate held against what its scenario says by now.
+/// What a certificate must be about: a trace of a scenario as it is now. All outlive the check.
+struct ProofSubject {
+  const WorldSpec& spec;
+  const WorldLayout& layout;
+  const StartCuboid& region;
+  const std::vector<ProofAction>& calls;
+};
+
+/// The drawn variables of a start region, in the order of certificates, and their box.
+std::vector<std::string> drawn_variables(const StartCuboid& region, StartBox& box);
+
+/// What a check found of one test.
+struct CheckedCertificate {
+  std::size_t number = 0;  // of the action
+  std::string event, function;
+  std::vector<std::string> assumed;  // as they follow from the scenario and the assumptions
+  std::int64_t confirmed = 0, unconfirmed = 0, wrong = 0;  // decided boxes
+  double safe = 0.0, refuted = 0.0;  // shares of the region that were confirmed
+};
+
+/// A certificate held against what its scenario says by now. Nothing in it is believed: tests and
+/// what they take for granted are derived anew from the scenario and its assumptions, whose values
+/// are held against what the options of the program admit.
 struct CertificateCheck {
-  std::string mismatch;          // the certificate is of something else; empty if it is not
+  std::string mismatch;          // it is of something else, or says what is not so; empty: neither
   std::int64_t confirmed = 0;    // decided boxes
   std::int64_t unconfirmed = 0;  // the second evaluation did not get there
   std::int64_t wrong = 0;        // at the middle of the box it says the contrary
-  double safe = 0.0, refuted = 0.0, open = 0.0;  // shares of the region, of the last test
+  std::vector<CheckedCertificate> tests;
+  std::vector<ProvableAction> actions;  // with tests, as the certificate has them
+
+  /// Something was confirmed, and nothing is open or wrong of what is said to be decided.
+  bool is_confirmed() const {
+    return mismatch.empty() && confirmed > 0 && unconfirmed == 0 && wrong == 0;
+  }
 };
-CertificateCheck check_certificate(const Certificate& certificate,
-                                   const std::vector<ProvableAction>& actions,
+CertificateCheck check_certificate(const Certificate& certificate, const ProofSubject& subject,
                                    const std::atomic<bool>* stop);
 
 /// Pieces that the second evaluation may cut a box into.

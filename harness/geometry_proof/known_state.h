@@ -30,6 +30,7 @@ struct ProofAssumptions {
   double held_height_m = 0.03, lean_rad = 0.2;
   /// Where sliders stand ("dMid.q"), in place of what the success of an action says.
   std::vector<std::pair<std::string, Bounds1>> sliders;
+  friend bool operator==(const ProofAssumptions&, const ProofAssumptions&) = default;
 };
 
 /// Where an arm's tool may be: as it was at the start, where parking leaves it, or anywhere.

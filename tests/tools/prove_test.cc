@@ -67,15 +67,35 @@ TEST_CASE("prove: a certificate is written, checked, and noticed when it was cha
   CAPTURE(checked.out);
   CHECK(checked.code == 0);
   CHECK(says(checked.out, ", 0 not confirmed, 0 wrong"));
+  CHECK(says(checked.out, "Drive::is_blocked: confirmed of the start region safe "));
+  CHECK(says(checked.out, "given      OpenDrawer(left,dMid): dMid.q is 0.447 to 0.452 m"));
+  CHECK(says(checked.out, "dMid.q=0.447:0.452 (not by default)"));
+  CHECK(says(checked.out, "by default drift=0.002, "));
+  CHECK(checked.err.empty());
+  // With --assume the assumptions are the caller's, and not those of the file.
+  const std::vector<std::string> granted = {"prove", kitchen("plan2.yaml"), "--check", "proof.json",
+                                            "--assume"};
+  auto same = granted, other_range = granted;
+  same.emplace_back("dMid.q=0.447:0.452");
+  other_range.emplace_back("dMid.q=0.44:0.46");
+  CHECK(cli.parallax(same).code == 0);
+  CHECK(cli.parallax(other_range).code == 3);
 
   const auto other = cli.parallax({"prove", kitchen("plan3.yaml"), "--check", "proof.json"});
   CHECK(other.code != 0);
   CHECK(other.code != 1);
 
   auto changed = Json::parse(first);
-  for (auto& box : changed["actions"][0]["tests"][0]["boxes"]) {
+  auto& test = changed["actions"][0]["tests"][0];
+  for (auto& box : test["boxes"]) {
     if (box["verdict"] == "refuted") box["verdict"] = "safe";
   }
+  cli.write("changed.json", changed.dump());
+  const auto shares = cli.parallax({"prove", kitchen("plan2.yaml"), "--check", "changed.json"});
+  CHECK(shares.code == 3);
+  CHECK(says(shares.err, "`safe` of `Drive::is_blocked` is "));
+  test["safe"] = test["safe"].get<double>() + test["refuted"].get<double>();
+  test["refuted"] = 0.0;
   cli.write("changed.json", changed.dump());
   const auto wrong = cli.parallax({"prove", kitchen("plan2.yaml"), "--check", "changed.json"});
   CHECK(wrong.code == 1);
@@ -85,6 +105,46 @@ TEST_CASE("prove: a certificate is written, checked, and noticed when it was cha
   const auto moved = cli.parallax({"prove", kitchen("plan2.yaml"), "--check", "moved.json"});
   CHECK(moved.code == 3);
   CHECK(says(moved.err, "E7127"));
+}
+
+TEST_CASE("prove: a certificate's own assumptions are not believed") {
+  const CliFixture cli;
+  REQUIRE(cli.parallax({"prove", kitchen("plan2.yaml"), "--trace", "2", "--action", "10", "--boxes",
+                        "40", "--out", "proof.json"})
+              .code == 4);
+  const auto proof = Json::parse(cli.read("proof.json"));
+  const auto check = [&](const Json& document) {
+    cli.write("forged.json", document.dump());
+    return cli.parallax({"prove", kitchen("plan2.yaml"), "--check", "forged.json"});
+  };
+  // Nothing is decided: nothing can be confirmed.
+  const auto open = check(proof);
+  CHECK(open.code == 4);
+  CHECK(says(open.out, "nothing was confirmed"));
+  auto all_safe = proof;
+  auto& test = all_safe["actions"][0]["tests"][0];
+  test.update({{"safe", 1.0}, {"refuted", 0.0}, {"open", 0.0}, {"examined", 1}});
+  test["unconfirmed"] = 0;
+  test["boxes"] = {{{"verdict", "safe"}, {"bounds", proof["region"]}}};
+  const auto believed = check(all_safe);
+  CHECK((believed.code == 1 || believed.code == 4));
+  for (const auto& value : {Json(-1), Json(-1e-9), Json(11), Json(nullptr), Json("0.002")}) {
+    auto forged = all_safe;
+    forged["assumptions"]["drift"] = value;
+    const auto refused = check(forged);
+    CAPTURE(value.dump());
+    CHECK(refused.code == 3);
+    CHECK(says(refused.err, "E7127"));
+  }
+  auto impossible = all_safe;
+  impossible["assumptions"]["sliders"]["dMid.q"] = {5.0, 6.0};
+  CHECK(says(check(impossible).err, "its stops do not let it go there"));
+  auto nothing = proof;
+  nothing["actions"] = Json::array();
+  CHECK(check(nothing).code == 4);
+  auto other_texts = proof;
+  other_texts["scenario_hash"] = "0123";
+  CHECK(says(check(other_texts).err, "W7176"));
 }
 
 TEST_CASE("prove: a simulation that contradicts a certificate is told") {
@@ -98,15 +158,19 @@ TEST_CASE("prove: a simulation that contradicts a certificate is told") {
                         "proof.json"})
               .code == 4);
   auto proof = Json::parse(cli.read("proof.json"));
-  const auto check = [&](const char* verdict) {
-    proof["actions"][0]["tests"][0]["boxes"][0]["verdict"] = verdict;
+  const auto check = [&](const std::string& verdict) {
+    auto& test = proof["actions"][0]["tests"][0];
+    test["boxes"][0]["verdict"] = verdict;
+    for (const char* share : {"safe", "refuted", "open"})
+      test[share] = share == verdict ? 1.0 : 0.0;
+    test["unconfirmed"] = 0;
     cli.write("one.json", proof.dump());
     return cli.parallax({"prove", plan, "--check", "one.json", "--simulate", "12"});
   };
   // As it is, one open box: nothing can contradict it.
   const auto open = check("open");
   CAPTURE(open.err);
-  CHECK(open.code == 0);
+  CHECK(open.code == 4);
   CHECK(says(open.out, "simulated  refused: 0 of 0 safe, 0 of 0 refuted, "));
   // What the middle of the box contradicts is wrong, whatever simulations say.
   const auto refuted = check("refuted");
@@ -151,7 +215,7 @@ TEST_CASE("prove: what cannot be proved is refused with its reason") {
   CHECK(says(beyond.err, "trace 1 has events 0 to 5"));
   for (const std::string& given :
        std::vector<std::string>{"drift", "drift=-1", "drift=nan", "drift=1x", "nothing=1",
-                                "dTop.q=2:1", "dTop.q=", "="}) {
+                                "dTop.q=2:1", "dTop.q=", "dTop.q=5:6", "="}) {
     const auto bad = cli.parallax({"prove", kitchen("plan3.yaml"), "--assume", given});
     CAPTURE(given);
     CHECK(bad.code == 2);

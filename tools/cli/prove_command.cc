@@ -2,21 +2,21 @@
 #include <cmath>
 #include <cstdlib>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
-#include "compiler/base/json.h"
 #include "harness/campaign/trial.h"
 #include "harness/geometry_proof/certificate.h"
 #include "harness/geometry_proof/held_against_simulation.h"
+#include "harness/geometry_proof/proof_assumptions.h"
 #include "harness/robot/ode_simulator.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_feed.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
+#include "tools/cli/prove_text.h"
 #include "tools/cli/replaceable.h"
 #include "tools/cli/shared_options.h"
 
@@ -67,20 +67,12 @@ std::string assume(const std::string& given, const harness::WorldLayout& layout,
   const auto equals = given.find('=');
   const std::string name = given.substr(0, equals);
   const std::string value = equals == std::string::npos ? "" : given.substr(equals + 1);
-  const std::pair<const char*, double*> known[] = {
-      {"drift", &out.drift_m},     {"drift-rad", &out.drift_rad},
-      {"sliding", &out.sliding_m}, {"sliding-rad", &out.sliding_rad},
-      {"goal", &out.goal_m},       {"goal-rad", &out.goal_rad},
-      {"parked", &out.parked_m},   {"held", &out.held_m},
-      {"held-rad", &out.held_rad}, {"held-height", &out.held_height_m},
-      {"lean", &out.lean_rad}};
-  for (const auto& [key, target] : known) {
-    if (name != key) continue;
+  for (const auto& field : harness::assumption_fields()) {
+    if (name != field.name) continue;
     const auto number = whole_number_text(value);
-    if (!number || *number < 0.0 || *number > 10.0) {
-      return fmt::format("`{}` is no number from 0 to 10", value);
-    }
-    *target = *number;
+    const auto why = harness::wrong_assumption(number.value_or(-1.0));
+    if (!why.empty()) return fmt::format("`{}` {}", value, why);
+    out.*field.value = *number;
     return "";
   }
   for (std::size_t i = 0; i < layout.sliders.size(); ++i) {
@@ -99,59 +91,6 @@ std::string assume(const std::string& given, const harness::WorldLayout& layout,
       name);
 }
 
-std::string percent(double share) { return fmt::format("{:6.2f} %", 100.0 * share); }
-
-/// How many boxes have the verdict, and what is met in most of them.
-std::string boxes_text(const harness::TestCertificate& test, harness::BoxVerdict verdict) {
-  std::map<std::string, double> culprits;
-  std::int64_t boxes = 0;
-  for (const auto& box : test.boxes) {
-    if (box.verdict != verdict) continue;
-    ++boxes;
-    double volume = 1.0;
-    for (const auto& one : box.bounds) volume *= one.upper - one.lower;
-    if (!box.culprit.empty()) culprits[box.culprit] += volume;
-  }
-  std::string text = fmt::format("{} box{}", boxes, boxes == 1 ? "" : "es");
-  const auto most =
-      std::max_element(culprits.begin(), culprits.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (most != culprits.end()) text += "; mostly " + most->first;
-  return text;
-}
-
-std::string simulated_text(const harness::SimulatedTest& test) {
-  std::string text;
-  for (const auto verdict :
-       {harness::BoxVerdict::kSafe, harness::BoxVerdict::kRefuted, harness::BoxVerdict::kOpen}) {
-    const auto& count = test.by_verdict[static_cast<std::size_t>(verdict)];
-    text += fmt::format("{}{} of {} {}", text.empty() ? "" : ", ", count.refused, count.starts,
-                        to_string(verdict));
-  }
-  std::string out = fmt::format("      simulated  refused: {}\n", text);
-  if (test.not_as_assumed > 0) {
-    std::string why;
-    for (const auto& [what, count] : test.broken) {
-      why += fmt::format("{}{} ({})", why.empty() ? "" : ", ", what, count);
-    }
-    out += fmt::format("                 {} not as assumed, and not counted: {}\n",
-                       test.not_as_assumed, why);
-  }
-  return out;
-}
-
-nlohmann::ordered_json simulated_json(const harness::SimulatedTest& test) {
-  nlohmann::ordered_json out;
-  for (const auto verdict :
-       {harness::BoxVerdict::kSafe, harness::BoxVerdict::kRefuted, harness::BoxVerdict::kOpen}) {
-    const auto& count = test.by_verdict[static_cast<std::size_t>(verdict)];
-    out[std::string(to_string(verdict))] = {{"starts", count.starts}, {"refused", count.refused}};
-  }
-  out["not_as_assumed"] = test.not_as_assumed;
-  out["broken"] = test.broken;
-  return out;
-}
-
 /// A trace and what can be proved of it.
 struct ProofTask {
   harness::CampaignTrace trace;
@@ -162,18 +101,8 @@ struct ProofTask {
   std::vector<harness::ProvableAction> actions;
 };
 
-std::vector<std::string> variables_of(const harness::StartCuboid& start, harness::StartBox& box) {
-  std::vector<std::string> names;
-  for (const auto& [name, interval] : start.dimensions) {
-    if (!(interval.lower < interval.upper)) continue;
-    names.push_back(name);
-    box.push_back({interval.lower, interval.upper});
-  }
-  return names;
-}
-
 std::optional<ProofTask> make_task(const ProveOptions& options, const ScenarioModel& loaded,
-                                   const harness::Certificate* given, Invocation& invocation) {
+                                   Invocation& invocation) {
   const auto& scenario = loaded.scenario;
   auto& sink = invocation.sink();
   if (!scenario.simulator.is_built_in() || !scenario.world.mobile) {
@@ -209,13 +138,17 @@ std::optional<ProofTask> make_task(const ProveOptions& options, const ScenarioMo
     sink.error_about(codes::kUsage, "--assume " + one, fault);
     return std::nullopt;
   }
-  if (given != nullptr) task.assumptions = given->assumptions;
+  if (const auto fault = harness::wrong_assumptions(task.assumptions, task.layout);
+      !fault.empty()) {
+    sink.error_about(codes::kUsage, "--assume", fault);
+    return std::nullopt;
+  }
   for (std::size_t i = 0; i < task.prepared.calls.size(); ++i) {
     const auto& call = task.prepared.calls[i];
     task.calls.push_back({task.trace.event(i), call.controller, call.arguments});
   }
   harness::StartBox whole;
-  const auto variables = variables_of(task.prepared.start, whole);
+  const auto variables = harness::drawn_variables(task.prepared.start, whole);
   if (variables.size() >= harness::AffineForm::kMostVariables) {
     sink.error(codes::kNothingToProve, scenario.sampling_source,
                fmt::format("{} variables are drawn, and a proof takes at most {}", variables.size(),
@@ -245,57 +178,9 @@ bool is_certificate(std::string_view head) {
 void report(const harness::Certificate& certificate, const ProofTask& task,
             const std::vector<harness::SimulatedTest>& simulated, Invocation& invocation) {
   if (invocation.options().json) {
-    auto document = base::parse_ordered_json(harness::certificate_json(certificate));
-    for (auto& action : document["actions"]) {
-      for (auto& test : action["tests"]) test.erase("boxes");  // those are for --out
-    }
-    if (!simulated.empty()) {
-      auto& all = document["simulated"] = nlohmann::ordered_json::array();
-      for (const auto& test : simulated) all.push_back(simulated_json(test));
-    }
-    return invocation.document(base::json_text(document) + "\n");
+    return invocation.document(proof_json(certificate, simulated));
   }
-  std::string text = fmt::format("trace {}: {}\n", certificate.trace, task.trace.events());
-  std::size_t index = 0;
-  for (const auto& action : certificate.actions) {
-    text += fmt::format("  {:>2}  {}\n", action.number, action.event);
-    if (!action.left_to_simulation.empty()) {
-      text += fmt::format("      left to simulation: {}\n", action.left_to_simulation);
-    }
-    for (const auto& test : action.tests) {
-      text += fmt::format("      {} ({}): {}\n", test.test.function, test.test.source,
-                          test.test.statement);
-      using harness::BoxVerdict;
-      text += fmt::format("      safe     {}  {}\n", percent(test.safe),
-                          boxes_text(test, BoxVerdict::kSafe));
-      text += fmt::format("      refuted  {}  {}\n", percent(test.refuted),
-                          boxes_text(test, BoxVerdict::kRefuted));
-      text += fmt::format("      open     {}  {}\n", percent(test.open),
-                          boxes_text(test, BoxVerdict::kOpen));
-      for (const auto& what : test.assumed) text += "      given      " + what + "\n";
-      if (index < simulated.size()) text += simulated_text(simulated[index]);
-      ++index;
-    }
-  }
-  invocation.result(text);
-}
-
-/// Of the certificate, what stands beside the actions that have tests to be asked about; the others
-/// are dropped.
-std::vector<harness::ActionCertificate> beside(std::vector<harness::ProvableAction>& actions,
-                                               const harness::Certificate& certificate) {
-  std::vector<harness::ActionCertificate> out;
-  std::erase_if(actions, [&](const auto& action) {
-    const auto claimed = std::find_if(certificate.actions.begin(), certificate.actions.end(),
-                                      [&](const auto& one) { return one.number == action.number; });
-    if (action.tests.empty() || claimed == certificate.actions.end() ||
-        claimed->tests.size() != action.tests.size()) {
-      return true;
-    }
-    out.push_back(*claimed);
-    return false;
-  });
-  return out;
+  invocation.result(proof_text(certificate, task.trace.events(), simulated));
 }
 
 /// True where a simulation contradicts, which is reported.
@@ -311,7 +196,7 @@ bool is_contradicted(const ProveOptions& options,
 }
 
 int run_proof(const ProveOptions& options, const ScenarioModel& loaded, Invocation& invocation) {
-  auto task = make_task(options, loaded, nullptr, invocation);
+  auto task = make_task(options, loaded, invocation);
   if (!task) return 0;
   const auto& scenario = loaded.scenario;
   if (!options.out.empty() &&
@@ -325,7 +210,7 @@ int run_proof(const ProveOptions& options, const ScenarioModel& loaded, Invocati
   certificate.scenario = scenario.name;
   certificate.scenario_hash = loaded.sources_hash;
   certificate.trace = task->trace.number;
-  certificate.variables = variables_of(task->prepared.start, certificate.region);
+  certificate.variables = harness::drawn_variables(task->prepared.start, certificate.region);
   certificate.assumptions = task->assumptions;
   auto limits = options.limits;
   limits.stop = &stop_flag();
@@ -375,44 +260,33 @@ int check_proof(const ProveOptions& options, const ScenarioModel& loaded, Invoca
   if (const auto fault = harness::read_certificate(*text, certificate)) return misfit(*fault);
   ProveOptions own = options;
   own.trace = certificate.trace;
-  auto task = make_task(own, loaded, &certificate, invocation);
+  auto task = make_task(own, loaded, invocation);
   if (!task) return 0;
-  harness::StartBox region;
-  const auto variables = variables_of(task->prepared.start, region);
-  bool same = variables == certificate.variables && region.size() == certificate.region.size();
-  for (std::size_t i = 0; same && i < region.size(); ++i) {
-    same = region[i].lower == certificate.region[i].lower &&
-           region[i].upper == certificate.region[i].upper;
+  if (!options.assume.empty() && certificate.assumptions != task->assumptions) {
+    return misfit("it has other assumptions than --assume; without --assume they are printed");
   }
-  if (!same) return misfit("its start region is not that of the scenario's trace");
-  task->actions = harness::provable_actions(loaded.scenario.world, task->layout,
-                                            task->prepared.start, task->calls, task->assumptions);
-  const auto result = harness::check_certificate(certificate, task->actions, &stop_flag());
+  auto result = harness::check_certificate(
+      certificate, {loaded.scenario.world, task->layout, task->prepared.start, task->calls},
+      &stop_flag());
   if (!result.mismatch.empty()) return misfit(result.mismatch);
+  if (certificate.scenario_hash != loaded.sources_hash) {
+    sink.error_about(codes::kCertificateOfOtherTexts, options.check, certificate.scenario_hash,
+                     loaded.sources_hash);
+  }
   std::vector<harness::SimulatedTest> simulated;
   if (options.simulate > 0) {
-    const auto proved = beside(task->actions, certificate);
     simulated = harness::simulate_tests(loaded.scenario.world, task->layout, task->prepared.sampler,
-                                        options.seed, options.simulate, task->calls, task->actions,
-                                        proved, &stop_flag());
+                                        options.seed, options.simulate, task->calls, result.actions,
+                                        certificate.actions, &stop_flag());
   }
   if (invocation.options().json) {
-    nlohmann::ordered_json document = {{"status", result.wrong > 0         ? "wrong"
-                                                  : result.unconfirmed > 0 ? "unconfirmed"
-                                                                           : "ok"},
-                                       {"confirmed", result.confirmed},
-                                       {"unconfirmed", result.unconfirmed},
-                                       {"wrong", result.wrong}};
-    for (const auto& test : simulated) document["simulated"].push_back(simulated_json(test));
-    invocation.document(base::json_text(document) + "\n");
+    invocation.document(check_json(certificate, result, simulated));
   } else {
-    auto told = fmt::format("{} boxes confirmed, {} not confirmed, {} wrong\n", result.confirmed,
-                            result.unconfirmed, result.wrong);
-    for (const auto& test : simulated) told += simulated_text(test);
-    invocation.result(told);
+    invocation.result(check_text(certificate, result, simulated));
   }
   if (result.wrong == 0 && is_contradicted(options, simulated, invocation)) return 0;
-  return result.wrong > 0 ? 1 : result.unconfirmed > 0 || stop_flag().load() ? 4 : 0;
+  if (result.wrong > 0) return 1;
+  return result.is_confirmed() && !stop_flag().load() ? 0 : 4;
 }
 
 int run_prove(const ProveOptions& options, Invocation& invocation) {
@@ -438,8 +312,10 @@ Command prove_command() {
       "  parallax prove scenarios/kitchen/plan2.yaml --check plan2.proof.json\n"
       "What is proved of an action holds where the actions before it succeed and leave things as\n"
       "`given` says; --simulate counts how often they do. What is open is left to simulation.\n"
-      "Exit codes: 0 every test passes everywhere (--check: all confirmed), 1 refuted somewhere\n"
-      "(--check: wrong), 4 some of it open, or nothing to prove.");
+      "--check believes nothing of the file: it prints what is confirmed under which assumptions.\n"
+      "Exit codes: 0 every test passes everywhere (--check: something is confirmed, and all that "
+      "is\n"
+      "said), 1 refuted somewhere (--check: wrong), 4 some of it open, or nothing to prove.");
   command.option("scenario", options->scenario, "Scenario file (YAML)").required().file({"yaml"});
   command.heading("What is proved");
   command.option("--trace", options->trace, "Which trace")

@@ -1,0 +1,166 @@
+#include "tools/cli/prove_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "compiler/base/json.h"
+#include "harness/geometry_proof/proof_assumptions.h"
+
+namespace parallax::tools {
+namespace {
+
+std::string percent(double share, int width = 6) {
+  return fmt::format("{:{}.2f} %", 100.0 * share, width);
+}
+
+/// How many boxes have the verdict, and what is met in most of them.
+std::string boxes_text(const harness::TestCertificate& test, harness::BoxVerdict verdict) {
+  std::map<std::string, double> culprits;
+  std::int64_t boxes = 0;
+  for (const auto& box : test.boxes) {
+    if (box.verdict != verdict) continue;
+    ++boxes;
+    double volume = 1.0;
+    for (const auto& one : box.bounds) volume *= one.upper - one.lower;
+    if (!box.culprit.empty()) culprits[box.culprit] += volume;
+  }
+  std::string text = fmt::format("{} box{}", boxes, boxes == 1 ? "" : "es");
+  const auto most =
+      std::max_element(culprits.begin(), culprits.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (most != culprits.end()) text += "; mostly " + most->first;
+  return text;
+}
+
+std::string simulated_text(const harness::SimulatedTest& test) {
+  std::string text;
+  for (const auto verdict :
+       {harness::BoxVerdict::kSafe, harness::BoxVerdict::kRefuted, harness::BoxVerdict::kOpen}) {
+    const auto& count = test.by_verdict[static_cast<std::size_t>(verdict)];
+    text += fmt::format("{}{} of {} {}", text.empty() ? "" : ", ", count.refused, count.starts,
+                        to_string(verdict));
+  }
+  std::string out = fmt::format("      simulated  refused: {}\n", text);
+  if (test.not_as_assumed > 0) {
+    std::string why;
+    for (const auto& [what, count] : test.broken) {
+      why += fmt::format("{}{} ({})", why.empty() ? "" : ", ", what, count);
+    }
+    out += fmt::format("                 {} not as assumed, and not counted: {}\n",
+                       test.not_as_assumed, why);
+  }
+  return out;
+}
+
+nlohmann::ordered_json simulated_json(const harness::SimulatedTest& test) {
+  nlohmann::ordered_json out;
+  for (const auto verdict :
+       {harness::BoxVerdict::kSafe, harness::BoxVerdict::kRefuted, harness::BoxVerdict::kOpen}) {
+    const auto& count = test.by_verdict[static_cast<std::size_t>(verdict)];
+    out[std::string(to_string(verdict))] = {{"starts", count.starts}, {"refused", count.refused}};
+  }
+  out["not_as_assumed"] = test.not_as_assumed;
+  out["broken"] = test.broken;
+  return out;
+}
+
+std::string_view status_of(const harness::CertificateCheck& result) {
+  if (result.wrong > 0) return "wrong";
+  if (result.unconfirmed > 0) return "unconfirmed";
+  return result.confirmed > 0 ? "ok" : "nothing";
+}
+
+}  // namespace
+
+std::string proof_json(const harness::Certificate& certificate,
+                       const std::vector<harness::SimulatedTest>& simulated) {
+  auto document = base::parse_ordered_json(harness::certificate_json(certificate));
+  for (auto& action : document["actions"]) {
+    for (auto& test : action["tests"]) test.erase("boxes");  // those are for --out
+  }
+  if (!simulated.empty()) {
+    auto& all = document["simulated"] = nlohmann::ordered_json::array();
+    for (const auto& test : simulated) all.push_back(simulated_json(test));
+  }
+  return base::json_text(document) + "\n";
+}
+
+std::string proof_text(const harness::Certificate& certificate, std::string_view events,
+                       const std::vector<harness::SimulatedTest>& simulated) {
+  std::string text = fmt::format("trace {}: {}\n", certificate.trace, events);
+  std::size_t index = 0;
+  for (const auto& action : certificate.actions) {
+    text += fmt::format("  {:>2}  {}\n", action.number, action.event);
+    if (!action.left_to_simulation.empty()) {
+      text += fmt::format("      left to simulation: {}\n", action.left_to_simulation);
+    }
+    for (const auto& test : action.tests) {
+      text += fmt::format("      {} ({}): {}\n", test.test.function, test.test.source,
+                          test.test.statement);
+      using harness::BoxVerdict;
+      text += fmt::format("      safe     {}  {}\n", percent(test.safe),
+                          boxes_text(test, BoxVerdict::kSafe));
+      text += fmt::format("      refuted  {}  {}\n", percent(test.refuted),
+                          boxes_text(test, BoxVerdict::kRefuted));
+      text += fmt::format("      open     {}  {}\n", percent(test.open),
+                          boxes_text(test, BoxVerdict::kOpen));
+      for (const auto& what : test.assumed) text += "      given      " + what + "\n";
+      if (index < simulated.size()) text += simulated_text(simulated[index]);
+      ++index;
+    }
+  }
+  return text;
+}
+
+std::string check_json(const harness::Certificate& certificate,
+                       const harness::CertificateCheck& result,
+                       const std::vector<harness::SimulatedTest>& simulated) {
+  nlohmann::ordered_json document = {{"status", status_of(result)},
+                                     {"confirmed", result.confirmed},
+                                     {"unconfirmed", result.unconfirmed},
+                                     {"wrong", result.wrong},
+                                     {"trace", certificate.trace}};
+  document["assumptions"] =
+      base::parse_ordered_json(harness::certificate_json(certificate))["assumptions"];
+  auto& tests = document["tests"] = nlohmann::ordered_json::array();
+  for (const auto& test : result.tests) {
+    tests.push_back({{"number", test.number},
+                     {"event", test.event},
+                     {"function", test.function},
+                     {"assumed", test.assumed},
+                     {"confirmed", test.confirmed},
+                     {"unconfirmed", test.unconfirmed},
+                     {"wrong", test.wrong},
+                     {"safe", test.safe},
+                     {"refuted", test.refuted}});
+  }
+  for (const auto& test : simulated) document["simulated"].push_back(simulated_json(test));
+  return base::json_text(document) + "\n";
+}
+
+std::string check_text(const harness::Certificate& certificate,
+                       const harness::CertificateCheck& result,
+                       const std::vector<harness::SimulatedTest>& simulated) {
+  std::string text = fmt::format("{} boxes confirmed, {} not confirmed, {} wrong\n",
+                                 result.confirmed, result.unconfirmed, result.wrong);
+  for (std::size_t i = 0; i < result.tests.size(); ++i) {
+    const auto& test = result.tests[i];
+    text += fmt::format("  {:>2}  {}, {}: confirmed of the start region safe {}, refuted {}\n",
+                        test.number, test.event, test.function, percent(test.safe, 0),
+                        percent(test.refuted, 0));
+    for (const auto& what : test.assumed) text += "      given      " + what + "\n";
+    if (i < simulated.size()) text += simulated_text(simulated[i]);
+  }
+  const char* head = "assumed   ";
+  for (const auto& line : harness::assumption_lines(certificate.assumptions)) {
+    text += fmt::format("{}{}\n", head, line);
+    head = "          ";
+  }
+  if (result.confirmed == 0) text += "nothing was confirmed\n";
+  return text;
+}
+
+}  // namespace parallax::tools
