@@ -75,6 +75,11 @@ class JournalReader {
 
   std::optional<std::string> take_record(SampleRecord record) {
     const auto trace = journal_.traces.find(record.trace);
+    const bool is_executed = journal_.header->asked.execution == Execution::kClosedLoop;
+    if (record.path.has_value() != is_executed) {
+      return is_executed ? "it has no `path`, and the run executed a plan"
+                         : "it has a `path`, and the run executed no plan";
+    }
     if (trace == journal_.traces.end() && !record.path) {
       return "its trace was not announced before it";
     }
@@ -90,9 +95,7 @@ class JournalReader {
     if (record.phase == DrawPhase::kConfirm) {
       const auto first = journal_.samples.find({record.trace, record.sample, DrawPhase::kCertify});
       if (first == journal_.samples.end()) return "it repeats a simulation that is not there";
-      if (record.initial != first->second.initial || record.seed != first->second.seed) {
-        return "it repeats a simulation with another start or seed";
-      }
+      if (auto why = wrong_repetition(record, first->second)) return why;
       // The digest is one of all that happened, if the simulator keeps its promise.
       const bool same = journal_.header->simulator.determinism == "bitwise" &&
                         !record.digest.empty() && record.digest == first->second.digest;
@@ -104,6 +107,21 @@ class JournalReader {
       return "this simulation stands there twice";
     }
     journal_.places.emplace(key, line_);
+    return std::nullopt;
+  }
+
+  /// A repetition is the same actions from the same start: only what came of them may differ.
+  static std::optional<std::string> wrong_repetition(const SampleRecord& again,
+                                                     const SampleRecord& first) {
+    if (first.status != SampleStatus::kOk) return "it repeats a simulation that was lost";
+    if (again.initial != first.initial || again.seed != first.seed) {
+      return "it repeats a simulation with another start or seed";
+    }
+    if (again.attempt != first.attempt || again.rejected != first.rejected ||
+        again.redrawn != first.redrawn) {
+      return "it repeats a simulation with other counts of what was drawn";
+    }
+    if (again.path != first.path) return "it repeats a simulation with another path";
     return std::nullopt;
   }
 

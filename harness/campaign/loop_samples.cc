@@ -97,12 +97,18 @@ bool is_same(const PathStep& a, const PathStep& b) {
 
 std::string wrong_path(const Scenario& scenario, const ExecutablePlan& plan,
                        const LoopBounds& bounds, const SampleRecord& record) {
-  if (record.status != SampleStatus::kOk || record.phase != DrawPhase::kCertify) return {};
+  // A repetition does what the first simulation did, which the reader of journals has compared.
+  if (record.phase != DrawPhase::kCertify) return {};
   const auto& path = *record.path;
-  if (path.steps.size() != record.outcomes.size() ||
-      record.observations.size() != record.outcomes.size() + 1) {
-    return "its observations are not those of its path";
-  }
+  const bool was_lost = record.status == SampleStatus::kLost;
+  if (was_lost && record.observations.empty()) return {};  // before the plan could begin
+  // One that was lost ends with a perform of which the outcome or the observation is missing.
+  const auto told = record.observations.size() - (record.observations.empty() ? 0 : 1);
+  const bool fits = was_lost ? path.steps.size() == told + 1 && (record.outcomes.size() == told ||
+                                                                 record.outcomes.size() == told + 1)
+                             : path.steps.size() == told && record.outcomes.size() == told &&
+                                   !record.observations.empty();
+  if (!fits) return "its observations are not those of its path";
   SampleRecord again;
   again.path.emplace();
   PlanSource source(scenario, plan, LoopSamples::choices_key(bounds.campaign_seed, record.sample),
@@ -110,10 +116,10 @@ std::string wrong_path(const Scenario& scenario, const ExecutablePlan& plan,
   source.begin(again);
   again.observations = {record.observations.front()};
   while (source.next(again) != nullptr) {
-    const auto told = again.outcomes.size();
-    if (told == record.outcomes.size()) break;
-    again.outcomes.push_back(record.outcomes[told]);
-    again.observations.push_back(record.observations[told + 1]);
+    const auto next = again.outcomes.size();
+    if (next == told) break;
+    again.outcomes.push_back(record.outcomes[next]);
+    again.observations.push_back(record.observations[next + 1]);
   }
   const auto& steps = again.path->steps;
   for (std::size_t i = 0; i < std::max(steps.size(), path.steps.size()); ++i) {

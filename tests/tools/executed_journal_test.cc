@@ -34,16 +34,21 @@ class ExecutedJournal : public TwoModels {
     json_of(*this, {"run", "two/own.yaml", "--out", "out", "--seed", "3"}, 1);
     journal_ = read("out/journal.ndjson");
   }
-  /// With `from` in the line of the discrepancy changed to `to`, every reader refuses the line.
-  void refused(const std::string& from, const std::string& to, const std::string& why) const {
+  /// With `from` changed to `to` in the line of the discrepancy and in that of its repetition, or
+  /// in the latter alone, every reader refuses the line.
+  void refused(const std::string& from, const std::string& to, const std::string& why,
+               bool repetition = false) const {
     const auto line_of = journal_.find("\"phase\":\"confirm\"");
     REQUIRE(line_of != std::string::npos);
-    const auto end = journal_.rfind('\n', line_of);
-    const auto begin = journal_.rfind('\n', end - 1) + 1;
-    const auto at = journal_.find(from, begin);
-    REQUIRE(at < end);
     auto changed = journal_;
-    changed.replace(at, from.size(), to);
+    const auto change_line_at = [&](std::size_t inside) {
+      const auto begin = changed.rfind('\n', inside) + 1, end = changed.find('\n', inside);
+      const auto at = changed.find(from, begin);
+      REQUIRE(at < end);
+      changed.replace(at, from.size(), to);
+    };
+    change_line_at(line_of);  // the later one first: the place of the other stays
+    if (!repetition) change_line_at(changed.rfind('\n', line_of) - 1);
     write("out/journal.ndjson", changed);
     const std::vector<std::vector<std::string>> commands = {
         {"replay", "out"},   {"explain", "out"},
@@ -72,6 +77,21 @@ TEST_CASE("a changed journal of an executed plan is refused by all that read it"
   }
   SUBCASE("another end of the plan") {
     cli.refused("\"end\":\"done\"", "\"end\":\"failed\"", "does not end like that");
+  }
+  SUBCASE("a repetition with another event") {
+    cli.refused("\"event\":\"OpenDrawer(top)\"", "\"event\":\"OpenDrawer(mid)\"",
+                "it repeats a simulation with another path", true);
+  }
+  SUBCASE("a repetition with another end") {
+    cli.refused("\"end\":\"done\"", "\"end\":\"failed\"",
+                "it repeats a simulation with another path", true);
+  }
+  SUBCASE("a repetition with another count") {
+    cli.refused("\"attempt\":0", "\"attempt\":1",
+                "it repeats a simulation with other counts of what was drawn", true);
+  }
+  SUBCASE("a repetition without a path") {
+    cli.refused("\"path\":", "\"way\":", "it has no `path`, and the run executed a plan", true);
   }
   SUBCASE("another initial state") {
     const auto journal = cli.read("out/journal.ndjson");
