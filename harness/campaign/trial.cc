@@ -14,6 +14,8 @@
 #include "harness/campaign/journal.h"
 #include "harness/campaign/start_check.h"
 #include "harness/region/state_mapping.h"
+#include "harness/simulator/protocol_check.h"
+#include "harness/simulator/units.h"
 #include "harness/world/world_layout.h"
 
 namespace parallax::harness {
@@ -95,6 +97,19 @@ bool SimulatorBench::lost_too_often(const SampleRecord& record, bool on_record) 
   return true;
 }
 
+namespace {
+
+/// Tells what a simulator of another program says of itself that is odd.
+void warn_of_simulator(const Scenario& scenario, const SimulatorInfo& info,
+                       base::DiagnosticSink& sink) {
+  if (scenario.simulator.is_built_in()) return;
+  auto odd = info_oddities(info);
+  for (auto& finding : unit_findings(info, {})) odd.push_back(std::move(finding.text));
+  for (const auto& text : odd) sink.warning(codes::kOddSimulator, scenario.simulator.source, text);
+}
+
+}  // namespace
+
 base::Result<bool> SimulatorBench::start() {
   auto info = pool_.info();
   if (!info) return false;
@@ -102,6 +117,7 @@ base::Result<bool> SimulatorBench::start() {
     return sink_.error(codes::kSimulatorNotStarted, scenario_.simulator.source, info->version);
   }
   simulator_ = *std::move(info);
+  warn_of_simulator(scenario_, simulator_, sink_);
   if (!check_against_simulator(scenario_, fluents_.ground(), simulator_, sink_))
     return sink_.already_reported();
   return true;

@@ -5,7 +5,8 @@
 #include <algorithm>
 
 #include "harness/conformance/conformance_run.h"
-#include "harness/conformance/units.h"
+#include "harness/simulator/protocol_check.h"
+#include "harness/simulator/units.h"
 
 namespace parallax::harness {
 
@@ -16,27 +17,10 @@ bool Conformance::check_handshake() {
     return false;
   }
   const auto& info = report_.info;
-  if (info.name.empty()) fault("it has no name");
-  if (info.determinism != "bitwise" && info.determinism != "tolerance" &&
-      info.determinism != "none") {
-    fault(fmt::format("`determinism` is `{}`, which is neither bitwise, tolerance nor none",
-                      info.determinism));
-  }
-  std::set<std::string> names;
-  std::size_t settable = 0;
-  for (const auto& parameter : info.parameters) {
-    if (!names.insert(parameter.name).second) {
-      fault(fmt::format("`{}` is declared twice", parameter.name));
-    }
-    if (parameter.lower && parameter.upper && *parameter.lower > *parameter.upper) {
-      fault(fmt::format("the bounds of `{}` are reversed", parameter.name));
-    }
-    if (parameter.settable) ++settable;
-  }
-  std::set<std::string> actions;
-  for (const auto& action : info.actions) {
-    if (!actions.insert(action).second) fault(fmt::format("`{}` is declared twice", action));
-  }
+  for (auto& text : info_faults(info)) fault(std::move(text));
+  for (auto& text : info_oddities(info)) warn(std::move(text));
+  const auto settable = std::count_if(info.parameters.begin(), info.parameters.end(),
+                                      [](const Parameter& one) { return one.settable; });
   if (info.parameters.empty()) warn("it declares no variables, so no scenario can be checked");
   say(now_, fmt::format("{} variables ({} to be set), {} actions, {:.2f} s", info.parameters.size(),
                         settable, info.actions.size(), hello_wall_s_));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "harness/conformance/conformance_run.h"
+#include "harness/simulator/protocol_check.h"
 
 // Asking the simulator, and what is noted of its answers.
 
@@ -100,7 +101,12 @@ double Conformance::act_timeout_s(double limit_s) const {
 std::optional<Outcome> Conformance::act(const TriedAction& action, double limit_s) {
   auto outcome =
       outcome_of(ActRequest{action.controller, action.arguments, limit_s}, act_timeout_s(limit_s));
-  if (outcome && !outcome->margins.empty()) has_margins_ = true;
+  if (!outcome) return outcome;
+  if (!outcome->margins.empty()) has_margins_ = true;
+  if (auto wrong = outcome_fault(action.controller, *outcome, limit_s, report_.info);
+      !wrong.empty()) {
+    fault(std::move(wrong));
+  }
   return outcome;
 }
 

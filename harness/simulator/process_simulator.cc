@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -14,11 +15,13 @@
 #include <thread>
 #include <utility>
 
+#include "compiler/base/clock_time.h"
 #include "compiler/base/contract.h"
 #include "compiler/base/subprocess.h"
 #include "harness/simulator/error_tail.h"
 #include "harness/simulator/process_memory.h"
 #include "harness/simulator/protocol.h"
+#include "harness/simulator/protocol_check.h"
 
 namespace parallax::harness {
 namespace {
@@ -27,7 +30,7 @@ using std::chrono::milliseconds;
 
 constexpr auto kTermGrace = milliseconds(2000);
 constexpr auto kStoppedGrace = milliseconds(500);  // when everything is to end soon
-constexpr auto kPollSlice = milliseconds(100);     // how late the stop flag may be seen
+constexpr int kPollSliceMs = 100;                  // how late the stop flag may be seen
 constexpr auto kMemorySlice = milliseconds(250);   // how late too much memory may be seen
 constexpr auto kReapSlice = milliseconds(5);
 constexpr std::size_t kErrorBytes = std::size_t{1} << 14U;
@@ -47,11 +50,6 @@ std::string ending_text(const siginfo_t& info) {
 using Clock = ChildProcess::Clock;
 
 constexpr double kActOverheadS = 5.0;  // beside the simulated time, when no act_timeout_s is given
-
-Clock::time_point after(double seconds) {
-  return Clock::now() +
-         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-}
 
 std::string_view method_name(const RequestBody& body) {
   static constexpr std::string_view kNames[] = {"hello", "reset",    "act", "observe",
@@ -115,11 +113,9 @@ void ChildProcess::drain_errors() {
 
 /// Waits for the child to be ready in `output_events`' sense, for its errors, or a slice of time.
 bool ChildProcess::poll_once(short output_events, Clock::time_point deadline) {
-  const auto left = std::chrono::duration_cast<milliseconds>(deadline - Clock::now());
-  const auto slice = std::clamp(left + milliseconds(1), milliseconds(0), milliseconds(kPollSlice));
   pollfd fds[2] = {{output_events == POLLOUT ? input_.get() : output_.get(), output_events, 0},
                    {errors_.get(), POLLIN, 0}};  // poll skips negative descriptors
-  const int ready = ::poll(fds, 2, static_cast<int>(slice.count()));
+  const int ready = ::poll(fds, 2, base::milliseconds_left(deadline, kPollSliceMs));
   if (ready > 0 && fds[1].revents != 0) drain_errors();
   return ready > 0 && fds[0].revents != 0;
 }
@@ -127,7 +123,7 @@ bool ChildProcess::poll_once(short output_events, Clock::time_point deadline) {
 bool ChildProcess::holds_too_much() {
   if (memory_mb_ == 0 || Clock::now() < memory_seen_ + kMemorySlice) return false;
   memory_seen_ = Clock::now();
-  return memory_of_session(pid_) > static_cast<std::uint64_t>(memory_mb_) << 20U;
+  return memory_of_session(pid_) > base::bytes_of_mb(memory_mb_);
 }
 
 bool ChildProcess::write_line(std::string_view line, Clock::time_point deadline) {
@@ -234,7 +230,7 @@ class ProcessSimulator::Link {
   std::variant<ReplyBody, std::string> ask(RequestBody body, double timeout_s) {
     const Request request{next_id_++, std::move(body)};
     const auto name = method_name(request.body);
-    const auto deadline = after(timeout_s);
+    const auto deadline = base::from_now(timeout_s);
     if (!child_.write_line(encode_request(request), deadline)) {
       return fmt::format("it did not take `{}`", name);
     }
@@ -264,14 +260,14 @@ class ProcessSimulator::Link {
   std::string lose(std::string reason, double grace_s) {
     // A child that has closed its output is usually about to end by itself: its own exit status
     // tells more than our signal.
-    const auto ending = child_.end(after(grace_s));
+    const auto ending = child_.end(base::from_now(grace_s));
     reason += fmt::format(" ({})", ending);
     return reason + error_tail_words(child_.error_tail());
   }
 
   void close(double timeout_s) {
     const auto reply = ask(CloseRequest{}, timeout_s);
-    child_.end(after(std::holds_alternative<ReplyBody>(reply) ? timeout_s : 0.0));
+    child_.end(base::from_now(std::holds_alternative<ReplyBody>(reply) ? timeout_s : 0.0));
   }
 
  private:
@@ -315,7 +311,14 @@ bool ProcessSimulator::ensure_started() {
   auto& body = std::get<ReplyBody>(reply);
   if (auto* hello = std::get_if<HelloReply>(&body)) {
     info_ = std::move(hello->info);
-    return !info_.can("describe") || ask_for_description();
+    if (info_.can("describe") && !ask_for_description()) return false;
+    const auto faults = info_faults(info_);
+    if (faults.empty()) return true;
+    lose(
+        fmt::format("what it says of itself breaks the protocol, and `parallax adapter-check` "
+                    "tells all of it: {}",
+                    fmt::join(faults, "; ")));
+    return false;
   }
   lose(fmt::format("it refused `hello`: {}", std::get<ErrorReply>(body).message));
   return false;
@@ -429,12 +432,22 @@ Outcome ProcessSimulator::act(std::string_view action, const State& arguments,
                               double sim_time_limit_s) {
   if (!link_) return {SimStatus::kLost, lost_reason_, 0.0, {}};
   ActRequest asked{std::string(action), arguments, sim_time_limit_s};
+  std::variant<ReplyBody, std::string> reply;
   if (!ahead_.empty()) {
-    auto reply = answered_ahead(asked);
-    if (!reply) return {SimStatus::kLost, lost_reason_, 0.0, {}};
-    return outcome_of(*std::move(reply));
+    auto known = answered_ahead(asked);
+    if (!known) return {SimStatus::kLost, lost_reason_, 0.0, {}};
+    reply = *std::move(known);
+  } else {
+    reply = link_->ask(std::move(asked), act_timeout_s(sim_time_limit_s));
   }
-  return outcome_of(link_->ask(std::move(asked), act_timeout_s(sim_time_limit_s)));
+  auto outcome = outcome_of(std::move(reply));
+  if (outcome.status == SimStatus::kLost || outcome.status == SimStatus::kUnsupported) {
+    return outcome;
+  }
+  auto fault = outcome_fault(action, outcome, sim_time_limit_s, info_);
+  if (fault.empty()) return outcome;
+  lose(std::move(fault));
+  return {SimStatus::kLost, lost_reason_, 0.0, {}};
 }
 
 State ProcessSimulator::observe() {

@@ -235,6 +235,7 @@ HelloReply read_info(FieldReader& reader, const Json& result) {
   if (const Json* able = reader.member(result, "capabilities", false)) {
     if (!able->is_array()) reader.fail("`capabilities` is not a list");
     for (const Json& item : *able) {
+      if (!item.is_string()) reader.fail("an element of `capabilities` is not a word");
       if (item.is_string()) hello.info.capabilities.push_back(item.get<std::string>());
     }
   }

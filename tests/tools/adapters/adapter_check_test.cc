@@ -257,6 +257,52 @@ TEST_CASE("a simulator is held against a scenario") {
   CHECK(odd.err.find("error[E5115]") != std::string::npos);
 }
 
+TEST_CASE("what adapter-check finds in a handshake or an outcome, a run refuses or warns of") {
+  if (skipped_without_python()) return;
+  // Stands between and changes an answer.
+  const std::string between =
+      "import json, subprocess, sys\n"
+      "child = subprocess.Popen([sys.executable, '-B', 'kinematic_2d.py'], stdin=subprocess.PIPE,\n"
+      "                         stdout=subprocess.PIPE, text=True)\n"
+      "for line in sys.stdin:\n"
+      "    child.stdin.write(line); child.stdin.flush()\n"
+      "    method, reply = json.loads(line)['method'], json.loads(child.stdout.readline())\n"
+      "    result = reply.get('result', {})\n"
+      "    # FAULT\n"
+      "    print(json.dumps(reply), flush=True)\n"
+      "    if method == 'close': break\n";
+  struct Nonsense {
+    const char* fault;
+    const char* words;
+    bool is_refused;  // else warned of
+  };
+  const Nonsense all[] = {
+      {"if method == 'hello': result['determinism'] = 'total'", "`determinism` is `total`", true},
+      {"if method == 'hello': result['params'].append(result['params'][0])", "is declared twice",
+       true},
+      {"if method == 'act': result['sim_time'] = 1e6", "ran 1e+06 s with a limit of", true},
+      {"if method == 'act': result['sim_time'] = -1", "`sim_time` is not within", true},
+      {"if method == 'hello': result['capabilities'] = ['telepathy']",
+       "`telepathy` is no capability", false}};
+  for (const auto& one : all) {
+    CAPTURE(one.fault);
+    const PythonFixture python;
+    auto text = between;
+    python.write("odd.py", text.replace(text.find("# FAULT"), 7, one.fault));
+    python.write("odd.yaml",
+                 "include: kinematic_2d.yaml\nsimulator: {command: [python3, -B, odd.py]}\n");
+    const auto checked = python.parallax({"adapter-check", "--scenario", "odd.yaml"});
+    CAPTURE(checked.out);
+    CHECK(checked.out.find(one.words) != std::string::npos);
+    const auto ran =
+        python.parallax({"run", "odd.yaml", "--allow-commands", "--max-runs", "2", "--out", "out"});
+    CAPTURE(ran.err);
+    CHECK(ran.err.find(one.words) != std::string::npos);
+    CHECK((ran.err.find("W7177") == std::string::npos) == one.is_refused);
+    if (one.is_refused) CHECK(ran.out.find("clean") == std::string::npos);
+  }
+}
+
 bool is_there(pid_t pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
   std::string text;

@@ -1,4 +1,4 @@
-#include "harness/conformance/units.h"
+#include "harness/simulator/units.h"
 
 #include <fmt/format.h>
 
