@@ -6,8 +6,8 @@
 #include <system_error>
 
 #include "compiler/base/codes/files.h"
-#include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/path_gate.h"
+#include "compiler/base/shown_text.h"
 
 namespace parallax::base {
 namespace {

@@ -160,6 +160,45 @@ TEST_CASE("a run folder's journal, report and pictures lie in it") {
   CHECK(cli.read("secret") == "password: [hunter2\n");
 }
 
+TEST_CASE("an output that nobody named is not written through a link out of the folder") {
+  const CliFixture cli;
+  cli.write("case.yaml", "include: edge.yaml\nexpect: {verdict: discrepancy, fast: true}\n");
+  fs::create_directory(cli.folder() / "away");
+  fs::create_directory(cli.folder() / "here");
+  for (const auto& entry : fs::directory_iterator(cli.folder())) {
+    if (entry.is_regular_file()) {
+      fs::rename(entry.path(), cli.folder() / "here" / entry.path().filename());
+    }
+  }
+  ProcessOptions options;
+  options.folder = (cli.folder() / "here").string();
+  const auto refused = [&](const std::vector<std::string>& command) {
+    CAPTURE(command.front());
+    const auto result = cli.parallax(command, options);
+    CAPTURE(result.err);
+    CHECK(result.code == 2);
+    CHECK(holds(result.err, "error[E0077]"));
+    CHECK(holds(result.err, "the link `out"));
+    CHECK(fs::is_empty(cli.folder() / "away"));
+  };
+  fs::create_symlink("../away", cli.folder() / "here/out");
+  refused({"suite", "case.yaml"});
+  refused({"suite", "case.yaml", "--no-cache"});
+  refused({"suite", "case.yaml", "--mutate"});
+  refused({"run", "edge.yaml"});
+  refused({"learn", "edge.yaml"});
+  // A place that is named is written to, wherever it leads.
+  CHECK(cli.parallax({"run", "edge.yaml", "--out", "out/edge", "-q"}, options).code == 1);
+  CHECK(fs::exists(cli.folder() / "away/edge/journal.ndjson"));
+  fs::remove_all(cli.folder() / "away/edge");
+  fs::remove(cli.folder() / "here/out");
+  fs::create_directories(cli.folder() / "here/out/suite");
+  fs::create_symlink("../../../away", cli.folder() / "here/out/suite/cache");
+  refused({"suite", "case.yaml"});
+  fs::remove(cli.folder() / "here/out/suite/cache");
+  CHECK(cli.parallax({"suite", "case.yaml"}, options).code == 0);
+}
+
 TEST_CASE("no output replaces a file that the command reads") {
   const CliFixture cli;
   cli.write("m.e", "range time 0 1\nfluent F()\nload part.e\n");

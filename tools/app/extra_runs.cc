@@ -9,6 +9,7 @@
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
+#include "compiler/base/write_gate.h"
 #include "harness/campaign/judge.h"
 #include "harness/campaign/start_check.h"
 
@@ -28,6 +29,9 @@ base::Result<std::unique_ptr<ExtraRuns>> ExtraRuns::open(
   if (std::filesystem::is_symlink(place, ignored)) {
     return sink.error_about(codes::kFileNotWritable, place.string(),
                             "it is a link, which may lead out of the run folder");
+  }
+  if (!base::check_unnamed_output(place, folder.run_dir, "another run folder", sink)) {
+    return sink.already_reported();
   }
   auto claimed = harness::RunFolder::claim(place, true, sink);
   if (!claimed) return sink.already_reported();

@@ -4,6 +4,7 @@
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
+#include "compiler/base/write_gate.h"
 #include "harness/campaign/trial.h"
 #include "tools/app/evidence.h"
 #include "tools/app/trace_feed.h"
@@ -66,8 +67,11 @@ class FurtherRuns {
   base::Result<std::unique_ptr<harness::Journal>> open(const std::string& run_dir) {
     auto& sink = context_.sink();
     const auto& header = *found_.journal.header;
-    auto folder =
-        harness::RunFolder::claim(std::filesystem::path(run_dir) / kFurtherRuns, true, sink);
+    const auto place = std::filesystem::path(run_dir) / kFurtherRuns;
+    if (!base::check_unnamed_output(place, run_dir, "another run folder", sink)) {
+      return sink.already_reported();
+    }
+    auto folder = harness::RunFolder::claim(place, true, sink);
     if (!folder) return sink.already_reported();
     auto recorded = harness::read_for_continuation(*folder, header, context_.files(), sink);
     if (!recorded) return sink.already_reported();

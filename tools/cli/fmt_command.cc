@@ -11,6 +11,7 @@
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
+#include "compiler/base/write_gate.h"
 #include "compiler/syntax/formatter.h"
 #include "tools/app/file_kind.h"
 #include "tools/cli/command.h"
@@ -51,6 +52,9 @@ void write_back(const std::string& path, const std::string& text, Invocation& in
   std::error_code error;
   auto target = fs::canonical(path, error);
   if (error) target = path;
+  base::WriteGate gate(invocation.form().allow_outside);
+  gate.admit_beside(path);
+  if (!gate.check(target, invocation.sink())) return;
   const auto status = fs::status(target, error);
   if (!base::write_file_atomically(target, text, invocation.sink())) return;
   if (!error) fs::permissions(target, status.permissions(), error);

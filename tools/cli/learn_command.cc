@@ -5,6 +5,7 @@
 
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/write_gate.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
 #include "tools/cli/shared_options.h"
@@ -37,6 +38,10 @@ int run_learn(const LearnCommandOptions& options, Invocation& invocation) {
   auto learn_options = options.learn;
   learn_options.out =
       options.folder.empty() ? learn_folder(learn_options.scenario) : fs::path(options.folder);
+  if (options.folder.empty() &&
+      !base::check_unnamed_output(learn_options.out, ".", "--out", invocation.sink())) {
+    return 0;
+  }
   learn_options.tool_version = kVersion;
   learn_options.model_file = options.output;
   learn_options.progress = progress_on_terminal(invocation.options());

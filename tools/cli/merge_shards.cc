@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "compiler/base/codes/files.h"
+#include "compiler/base/write_gate.h"
 #include "tools/cli/suite_history_option.h"
 #include "tools/cli/suite_output.h"
 #include "tools/suite/suite_loop.h"
@@ -18,6 +19,7 @@ int merge_shards(const SuiteOptions& options, Invocation& invocation) {
       !may_append(options, invocation)) {
     return 0;
   }
+  if (!options.out_given && !base::check_unnamed_output(options.out, ".", "--out", sink)) return 0;
   for (const auto& folder : options.merge) {
     std::error_code error;
     if (!std::filesystem::equivalent(folder, options.out, error)) continue;

@@ -43,7 +43,16 @@ void tell_written(const std::vector<ChangedFile>& files, const std::vector<std::
   }
 }
 
-int apply(const RepairResult& result, std::int64_t number, Invocation& invocation) {
+/// What --apply may change: the files of the current project, and those beside a scenario that the
+/// user named.
+base::WriteGate write_gate(const RunFolderOptions& folder, const Invocation& invocation) {
+  base::WriteGate gate(invocation.form().allow_outside);
+  if (!folder.scenario.empty()) gate.admit_beside(folder.scenario);
+  return gate;
+}
+
+int apply(const RepairResult& result, const RepairCommandOptions& options, Invocation& invocation) {
+  const auto number = options.apply;
   const auto count = static_cast<std::int64_t>(result.proposals.size());
   if (number > count) {
     invocation.sink().error_about(
@@ -52,7 +61,8 @@ int apply(const RepairResult& result, std::int64_t number, Invocation& invocatio
     return 0;
   }
   const auto& proposal = result.proposals[static_cast<std::size_t>(number) - 1];
-  if (!apply_proposal(proposal, invocation)) return 0;
+  if (!apply_proposal(proposal, write_gate(options.repair.folder, invocation), invocation))
+    return 0;
   tell_written(proposal.files, proposal.read_by_world, invocation);
   return 0;
 }
@@ -105,7 +115,7 @@ int repair_loop(const RepairCommandOptions& options, const ExperimentOptions& ex
   } else if (options.apply == 1) {
     Proposal all;
     all.files = loop->files;
-    if (!apply_proposal(all, invocation)) return 0;
+    if (!apply_proposal(all, write_gate(given.folder, invocation), invocation)) return 0;
     tell_written(all.files, loop->read_by_world, invocation);
   }
   return exit_code(loop->end);
@@ -141,7 +151,7 @@ int repair(const RepairCommandOptions& options, Invocation& invocation) {
     return decided ? 0 : kNoneFound;
   }
   if (options.apply > 0 && !result->proposals.empty()) {
-    return apply(*result, options.apply, invocation);
+    return apply(*result, options, invocation);
   }
   if (result->proposals.empty()) return kNoneFound;
   // What was found is right by itself, even if a limit kept others from being found.
@@ -178,7 +188,8 @@ Command repair_command() {
                  "Also say which of these properties of the plan each proposal breaks or restores");
   command
       .option("--apply", options->apply,
-              "Write this proposal into the files of the model or the plan")
+              "Write this proposal into the files of the model or the plan, if they lie below the "
+              "current folder or in its repository; else name --scenario, or --allow-outside")
       .check(Positive{});
   command.heading("Simulations that tell them apart");
   command

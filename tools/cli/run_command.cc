@@ -7,6 +7,7 @@
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/write_gate.h"
 #include "harness/campaign/campaign.h"
 #include "harness/report/report.h"
 #include "tools/app/closed_loop.h"
@@ -241,6 +242,9 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   }
   const auto& model = loaded->compilation.model;
   auto campaign = campaign_options(options, *loaded, invocation);
+  if (options.out.empty() && !base::check_unnamed_output(campaign.run_dir, ".", "--out", sink)) {
+    return 0;
+  }
   const auto simulator = permitted_simulator(
       *loaded, options.commands.allow || !options.commands.refuse, invocation, *workers);
   if (!simulator) return 0;

@@ -4,6 +4,7 @@
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
+#include "compiler/base/write_gate.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
@@ -71,6 +72,12 @@ bool is_folder(const std::filesystem::path& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
   return std::filesystem::is_directory(path, error);
+}
+
+/// Where nobody named the folder of results, links may not lead it elsewhere.
+base::Status check_suite_folder(const SuiteOptions& options, base::DiagnosticSink& sink) {
+  if (options.out_given) return base::Unit{};
+  return base::check_unnamed_output(options.out, ".", "--out", sink);
 }
 
 int usage_error(const std::string& message, Invocation& invocation) {
@@ -155,6 +162,7 @@ int score_mutants(const SuiteOptions& options, Invocation& invocation) {
   }
   const auto cases = wanted_cases(options, {}, invocation);
   if (!cases) return 0;
+  if (!check_suite_folder(options, invocation.sink())) return 0;
   if (!is_folder(options.out)) {
     invocation.sink().error_about(codes::kUsage, options.out,
                                   "--out: this is no folder, and none can be made here");
@@ -217,8 +225,8 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
   const auto quarantine = quarantine_of(options, invocation);
   auto cases = wanted_cases(options, earlier->cases, invocation);
   const auto ledger = ledger_of(options, invocation);
-  if (!quarantine || !cases || !ledger || !may_write(options, invocation) ||
-      !may_append(options, invocation)) {
+  if (!quarantine || !cases || !ledger || !check_suite_folder(options, sink) ||
+      !may_write(options, invocation) || !may_append(options, invocation)) {
     return 0;
   }
   const auto* known = *ledger ? &**ledger : nullptr;
@@ -282,6 +290,7 @@ Command suite_command() {
                "Only expectations of models, and scenarios that say `fast: true`");
   command.heading("Results");
   command.option("--out", options->out, "Folder of the runs, made anew, and the results")
+      .given(options->out_given)
       .show_default()
       .folder();
   command.option("--junit", options->junit, "Write a JUnit report to this file").file();

@@ -15,6 +15,7 @@ struct SuiteOptions {
   std::vector<std::string> paths, merge;
   std::string only;
   std::string out = "out/suite";
+  bool out_given = false;
   std::string junit, markdown, annotations, quarantine, cache, verify_cache, ledger;
   std::string history, revision;
   std::string shard = "1/1";

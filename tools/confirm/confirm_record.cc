@@ -7,6 +7,7 @@
 
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
+#include "compiler/base/write_gate.h"
 #include "tools/app/kept_borders.h"
 #include "tools/confirm/confirm.h"
 
@@ -166,8 +167,11 @@ std::vector<std::string> sentences_of(const Json& object) {
 
 base::Status write(const std::string& run_dir, const char* name, const Json& document,
                    base::DiagnosticSink& sink) {
-  return base::write_file_atomically(std::filesystem::path(run_dir) / name,
-                                     base::json_text(document, 1) + '\n', sink);
+  const auto place = std::filesystem::path(run_dir) / name;
+  if (!base::check_unnamed_output(place.parent_path(), run_dir, "another run folder", sink)) {
+    return sink.already_reported();
+  }
+  return base::write_file_atomically(place, base::json_text(document, 1) + '\n', sink);
 }
 
 }  // namespace

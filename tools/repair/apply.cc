@@ -26,11 +26,13 @@ bool is_read_only(const fs::path& target, fs::perms permissions) {
   return (permissions & kWrite) == fs::perms::none || ::access(target.c_str(), W_OK) != 0;
 }
 
-base::Result<Replacement> look_at(const ChangedFile& file, base::DiagnosticSink& sink) {
+base::Result<Replacement> look_at(const ChangedFile& file, const base::WriteGate& gate,
+                                  base::DiagnosticSink& sink) {
   std::error_code error;
   Replacement out;
   out.target = fs::canonical(file.name, error);
   if (error) out.target = file.name;
+  if (!gate.check(out.target, sink)) return sink.already_reported();
   const auto now = base::read_file(out.target, sink);
   if (!now) return sink.already_reported();
   out.permissions = fs::status(out.target, error).permissions();
@@ -68,11 +70,12 @@ base::Status replace_all(const std::vector<Replacement>& all, const std::vector<
 
 }  // namespace
 
-base::Status apply_proposal(const Proposal& proposal, Context& context) {
+base::Status apply_proposal(const Proposal& proposal, const base::WriteGate& gate,
+                            Context& context) {
   auto& sink = context.sink();
   std::vector<Replacement> all;
   for (const auto& file : proposal.files) {
-    auto one = look_at(file, sink);
+    auto one = look_at(file, gate, sink);
     if (!one) return sink.already_reported();
     all.push_back(*std::move(one));
   }

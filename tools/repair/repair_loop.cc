@@ -128,7 +128,7 @@ class Rounds {
     auto files = copy_->in_copies(std::move(first->files), context_);
     if (!files) return sink.already_reported();
     first->files = *std::move(files);
-    if (!apply_proposal(*first, context_)) return sink.already_reported();
+    if (!apply_proposal(*first, base::WriteGate(true), context_)) return sink.already_reported();
     round.words = first->words;
     round.effects = first->effects;
     round.patch = patch_from_here(first->files);

@@ -38,22 +38,27 @@ TEST_CASE("several files are written as one") {
   };
   const auto files = count();
   SUBCASE("all of them") {
-    REQUIRE(apply_proposal(proposal, context));
+    REQUIRE(apply_proposal(proposal, base::WriteGate(true), context));
     for (const auto* name : {"a.e", "b.e", "c.e"}) CHECK(cli.read(name) == "after\n");
+  }
+  SUBCASE("none, if one lies where nothing may be changed") {
+    proposal.files.back().name = (fs::temp_directory_path() / "c.e").string();
+    CHECK_FALSE(apply_proposal(proposal, base::WriteGate(false), context));
+    for (const auto* name : {"a.e", "b.e"}) CHECK(cli.read(name) == "before\n");
   }
   SUBCASE("none, if one is read-only, whoever asks") {
     fs::permissions(cli.folder() / "c.e", fs::perms::owner_read);
-    CHECK_FALSE(apply_proposal(proposal, context));
+    CHECK_FALSE(apply_proposal(proposal, base::WriteGate(true), context));
     for (const auto* name : {"a.e", "b.e", "c.e"}) CHECK(cli.read(name) == "before\n");
   }
   SUBCASE("none, if one changed meanwhile") {
     cli.write("c.e", "else\n");
-    CHECK_FALSE(apply_proposal(proposal, context));
+    CHECK_FALSE(apply_proposal(proposal, base::WriteGate(true), context));
     for (const auto* name : {"a.e", "b.e"}) CHECK(cli.read(name) == "before\n");
   }
   SUBCASE("none, if the last name is taken by a folder meanwhile") {
     proposal.files.back().name = (cli.folder() / "gone.e").string();
-    CHECK_FALSE(apply_proposal(proposal, context));
+    CHECK_FALSE(apply_proposal(proposal, base::WriteGate(true), context));
     for (const auto* name : {"a.e", "b.e"}) CHECK(cli.read(name) == "before\n");
   }
   CHECK(count() == files);  // no temporary file is left

@@ -101,6 +101,41 @@ TEST_CASE("a run cannot tell which condition is missing; further ones from other
   }
 }
 
+TEST_CASE("a repair in the copy of a project leaves the original alone") {
+  const Drawer cli("[time] HoldsAt(Lit(),time) -> Initiates(Pull(),Open(),time).\n");
+  json_of(cli, {"run", "drawer.yaml", "--out", "out"}, 1);
+  fs::create_directory(cli.folder() / "copy");
+  for (const auto& entry : fs::directory_iterator(cli.folder())) {
+    if (entry.path().filename() != "copy") {
+      fs::copy(entry.path(), cli.folder() / "copy" / entry.path().filename(),
+               fs::copy_options::recursive);
+    }
+  }
+  const auto original = files_below(cli.folder());
+  const auto in_copy = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = {"repair", "out", "--runs", "0", "--apply", "1"};
+    words.insert(words.end(), more.begin(), more.end());
+    ProcessOptions options;
+    options.folder = (cli.folder() / "copy").string();
+    return cli.parallax(words, options);
+  };
+  const auto refused = in_copy({});
+  CAPTURE(refused.err);
+  CHECK(refused.code == 2);
+  CHECK(refused.err.find("error[E0076]") != std::string::npos);
+  CHECK(refused.err.find("--scenario") != std::string::npos);
+  CHECK(files_below(cli.folder()) == original);
+  const auto model = cli.read("model.e");
+  const auto named = in_copy({"--scenario", "drawer.yaml"});
+  CAPTURE(named.err);
+  CHECK(named.code == 0);
+  CHECK(cli.read("model.e") == model);
+  CHECK(cli.read("copy/model.e") != model);
+  cli.write("copy/model.e", model);
+  CHECK(in_copy({"--allow-outside"}).code == 0);
+  CHECK(cli.read("model.e") != model);
+}
+
 TEST_CASE("experiments and rounds are the same where workers elsewhere simulate") {
   for (const std::string execution : {"open-loop", "closed-loop"}) {
     CAPTURE(execution);
