@@ -75,7 +75,9 @@ class JournalReader {
 
   std::optional<std::string> take_record(SampleRecord record) {
     const auto trace = journal_.traces.find(record.trace);
-    const bool is_executed = journal_.header->asked.execution == Execution::kClosedLoop;
+    const auto& asked = journal_.header->asked;
+    // Random sequences of events are simulated as traces are, whatever the scenario says.
+    const bool is_executed = asked.execution == Execution::kClosedLoop && !asked.random_sequences;
     if (record.path.has_value() != is_executed) {
       return is_executed ? "it has no `path`, and the run executed a plan"
                          : "it has a `path`, and the run executed no plan";
