@@ -3,11 +3,10 @@
 #include <algorithm>
 
 #include "harness/calibration/calibration.h"
+#include "harness/confidence/rounding.h"
 
 namespace parallax::harness {
 namespace {
-
-std::string percent_of(double share) { return fmt::format("{:.3g} %", 100.0 * share); }
 
 /// "1.02 %", in bold where it is more than is allowed.
 std::string cell_text(const CalibrationCell& cell) {
@@ -40,7 +39,7 @@ std::string table_of(const std::vector<CalibrationCell>& cells) {
         continue;
       }
       if (cell->allowed) {
-        const auto may = percent_of(*cell->allowed);
+        const auto may = percent_up(*cell->allowed);
         if (allowed.find(may) == std::string::npos) allowed += (allowed.empty() ? "" : ", ") + may;
       }
       row += " " + cell_text(*cell) + " |";
@@ -70,8 +69,8 @@ std::string calibration_markdown(const CalibrationResult& result) {
   auto out = fmt::format(
       "Share of loops in which `p < {}` was claimed with {} confidence, and falsely, as p is {} "
       "(mean runs of a loop).\n",
-      percent_of(options.epsilon), percent_of(options.confidence_level),
-      percent_of(options.epsilon));
+      percent_up(options.epsilon), level_text(options.confidence_level),
+      percent_up(options.epsilon));
   if (!result.in_process.empty()) {
     out += fmt::format("\n{} loops a cell, in process:\n\n{}", options.loops,
                        table_of(result.in_process));

@@ -10,6 +10,7 @@
 #include "compiler/base/contract.h"
 #include "compiler/base/hash.h"
 #include "harness/campaign/journal.h"
+#include "harness/campaign/repetition.h"
 #include "harness/campaign/run_setup.h"
 #include "harness/campaign/trace_campaign.h"
 #include "harness/campaign/trace_family.h"
@@ -56,6 +57,7 @@ class Campaign {
     journal_ = std::move(*journal);
     result_.journal_open = true;
     const auto complete = explore();
+    if (complete && *complete && !lost_too_often_) repeat_first_clean();
     // Traces that are finished are not lost to an error in a later one.
     result_.failed = !complete;
     if (result_.failed && result_.traces.empty()) return sink_.already_reported();
@@ -65,6 +67,7 @@ class Campaign {
  private:
   /// Called in a worker's thread; by then the journal is open, as samples need a trace.
   void keep(const SampleRecord& record) {
+    if (is_repeating_) return;  // no sample, and on no journal
     const bool is_result =
         record.status == SampleStatus::kOk || record.status == SampleStatus::kLost;
     if (is_result) journal_->append(record);
@@ -78,9 +81,7 @@ class Campaign {
       auto trace = family_.next();
       if (!trace) return sink_.already_reported();
       if (!*trace) {
-        result_.exploration = traces_.exploration();
-        result_.bounds = traces_.bounds();
-        return result_.exploration != "stopped";
+        return family_.exploration() != "stopped";
       }
       if (max_traces > 0 && static_cast<std::int64_t>(result_.traces.size()) >= max_traces) {
         limited_ = true;
@@ -90,6 +91,7 @@ class Campaign {
       if (!end) return sink_.already_reported();
       if (*end == TraceEnd::kStopped) return false;
       if (*end == TraceEnd::kLostTooOften) {
+        lost_too_often_ = true;
         // Left in the journal they would end every continuation where this run ended. Where losses
         // must not be repeated they stay, and a continuation goes on behind them.
         if (may_repeat_losses(result_.simulator)) {
@@ -113,6 +115,7 @@ class Campaign {
     if (!outcome) return sink_.already_reported();
     result_.simulations += outcome->result.simulations;
     if (outcome->result.search) result_.simulations += outcome->result.search->runs;
+    if (!clean_ && !outcome->discrepancy) clean_ = std::move(outcome->first_clean);
     result_.traces.push_back(std::move(outcome->result));
     if (outcome->discrepancy) result_.discrepancies.push_back(std::move(*outcome->discrepancy));
     std::move(outcome->consumed.begin(), outcome->consumed.end(), std::back_inserter(consumed_));
@@ -163,6 +166,15 @@ class Campaign {
     return base::Unit{};
   }
 
+  /// Does the simulator do what it did at first? Only where something is claimed of clean runs.
+  void repeat_first_clean() {
+    if (!clean_) return;
+    is_repeating_ = true;
+    sampled_ = {0.0, bench_.simulated_s(), bench_.runs_made()};
+    result_.repetition = repeat_clean(*clean_, bench_);
+    apply_repetition(result_);
+  }
+
   base::Result<CampaignResult> finished(bool complete) {
     bench_.close();
     if (complete) recorder_.finish(consumed_);
@@ -173,6 +185,7 @@ class Campaign {
     const auto is = [&](CampaignVerdict verdict) {
       return [verdict](const TraceResult& trace) { return trace.verdict == verdict; };
     };
+    note_exploration();
     claim_family();
     const auto& traces = result_.traces;
     result_.interrupted = !complete;
@@ -183,7 +196,35 @@ class Campaign {
       result_.verdict = CampaignVerdict::kNoDiscrepancy;
     }
     note_timing(bench_, started_, result_);
+    if (is_repeating_) {
+      result_.timing.runs_made = sampled_.runs_made;
+      result_.timing.simulated_s = sampled_.simulated_s;
+    }
     return std::move(result_);
+  }
+
+  /// What is known of the model's traces does not depend on what ended the simulations.
+  void note_exploration() {
+    if (result_.failed || family_.exploration() == "stopped" || !family_.all_given()) return;
+    result_.exploration = family_.exploration();
+    result_.bounds = traces_.bounds();
+  }
+
+  /// What the search for traces says of those that are not among the simulated ones.
+  std::string other_traces_text(std::int64_t simulated) const {
+    const auto all = result_.spending->traces().value_or(simulated);
+    const std::string_view found = family_.exploration();
+    std::string text;
+    if (simulated < all) {
+      text = fmt::format("{} of {} traces {} not simulated; ", all - simulated, all,
+                         all - simulated == 1 ? "was" : "were");
+    }
+    if (found == "all traces explored") return text + "the solver finds no other trace";
+    if (found == "complete up to bound") {
+      return text + fmt::format("the solver finds no other trace up to the horizon of {}",
+                                scenario_.horizon);
+    }
+    return text + "the model may have other traces";
   }
 
   /// What is claimed of all traces together.
@@ -192,22 +233,19 @@ class Campaign {
     if (!result_.spending) return;
     std::vector<FamilyMember> members;
     for (const auto& trace : result_.traces) {
-      members.push_back({trace.clean, trace.lost, trace.simulations,
-                         trace.verdict == CampaignVerdict::kDiscrepancy, trace.rejected > 0,
-                         trace.trace->other_initial_states == base::Known::kYes, trace.stated,
-                         trace.law ? trace.law->text() : std::string()});
+      members.push_back({trace.clean,
+                         trace.lost,
+                         trace.simulations,
+                         trace.verdict == CampaignVerdict::kDiscrepancy,
+                         trace.rejected > 0,
+                         trace.trace->other_initial_states == base::Known::kYes,
+                         trace.stated,
+                         {trace.law ? trace.law->text() : std::string(), trace.left_out}});
     }
     FamilyScope scope;
     scope.split_initial = options_.split_initial;
-    const auto traces = std::ssize(members), all = result_.spending->traces().value_or(traces);
-    scope.completeness =
-        traces < all ? fmt::format("{} of {} traces {} not simulated", all - traces, all,
-                                   all - traces == 1 ? "was" : "were")
-        : result_.exploration == "all traces explored" ? "the solver finds no other trace"
-        : result_.exploration == "complete up to bound"
-            ? fmt::format("the solver finds no other trace up to the horizon of {}",
-                          scenario_.horizon)
-            : "the model may have other traces";
+    scope.completeness = other_traces_text(std::ssize(members));
+    if (!result_.repetition.holds()) return;
     result_.claim = family_claim(members, scenario_.criterion, scenario_.comparison(), scope);
   }
 
@@ -224,6 +262,10 @@ class Campaign {
   CampaignResult result_;
   std::vector<TraceLine> lines_;
   std::vector<SampleRecord> consumed_;
+  std::optional<CleanSample> clean_;  // the first of a trace without discrepancy
+  bool is_repeating_ = false;         // set before workers repeat it
+  CampaignResult::Timing sampled_;    // what samples took, before it was repeated
+  bool lost_too_often_ = false;
   bool limited_ = false;  // by max_traces
   bool warned_of_limit_ = run_limit(scenario_).max_runs < run_limit(scenario_).needed;
   RunRecorder recorder_;

@@ -115,11 +115,44 @@ struct Discrepancy {
   State end;  // the variables that were compared, as last observed
 };
 
+/// What a clean simulation came to when it was made once more, with the same start and seed.
+struct Repetition {
+  enum class Outcome : std::uint8_t {
+    kSame,       // to the last bit
+    kOtherBits,  // clean, but not the same
+    kNotClean,
+    kLost,
+    kRefused,  // its start, or a request
+  };
+  bool is_fresh = false;  // in a simulator that was started for it; else after the others
+  Outcome outcome = Outcome::kSame;
+  std::string detail;  // where it differs, or why it was lost
+};
+/// "same", "other-bits", "not-clean", "lost", "refused"
+std::string_view to_string(Repetition::Outcome outcome);
+
+/// The repetitions of a run's first clean simulation at its end (harness/campaign/repetition.h).
+struct RepetitionResult {
+  std::int64_t trace = 0, sample = 0;
+  std::vector<Repetition> repetitions;  // that were made
+
+  bool holds() const {
+    for (const auto& one : repetitions) {
+      if (one.outcome != Repetition::Outcome::kSame &&
+          one.outcome != Repetition::Outcome::kOtherBits) {
+        return false;
+      }
+    }
+    return true;
+  }
+};
+
 struct TraceResult {
   std::shared_ptr<const CampaignTrace> trace;
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
   std::vector<SampledDimension> start_region;  // the continuous states that it stands for
-  std::vector<StartShare> start_shares;        // how much of their cells these are
+  std::vector<StartShare> start_shares;        // how much of their cells is drawn from
+  std::string left_out;                        // what of the region is never drawn; empty: nothing
   std::optional<LawResult> law;                // none: starts are uniform
   std::int64_t simulations = 0;  // run and not rejected before they began; lost ones included
   std::int64_t clean = 0;
@@ -177,6 +210,7 @@ struct CampaignResult {
   std::string replay_folder;  // run folder as the user wrote it
   std::vector<TraceResult> traces;
   std::vector<Discrepancy> discrepancies;
+  RepetitionResult repetition;  // of the first clean simulation
   std::shared_ptr<const SecondOpinion>
       second_opinion;                   // of another simulator; null: none was asked
   std::vector<CoverageShare> coverage;  // of what there is; none: it was not looked at

@@ -12,6 +12,7 @@
 #include "harness/campaign/loop_counts.h"
 #include "harness/campaign/loop_judge.h"
 #include "harness/campaign/loop_stream.h"
+#include "harness/campaign/repetition.h"
 #include "harness/campaign/run_setup.h"
 #include "harness/campaign/start_check.h"
 #include "harness/confidence/criterion.h"
@@ -23,6 +24,26 @@ namespace {
 using LoopClock = std::chrono::steady_clock;
 
 constexpr double kRateLevel = 0.95;  // of the intervals of rates, as of `parallax rates`
+
+/// The plan executed once more from the start and seed of a record, with the same choices.
+class RepeatedExecution final : public SampleMaker {
+ public:
+  explicit RepeatedExecution(std::shared_ptr<const LoopSamples> samples)
+      : samples_(std::move(samples)) {}
+  std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
+                                   const std::function<bool()>& abandoned) const override {
+    return samples_->make(sample, simulator, abandoned);
+  }
+  std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
+                                     const std::function<bool()>& abandoned) const override {
+    auto again = samples_->make_at(record, record.sample, record.initial, simulator, abandoned);
+    if (again) again->phase = DrawPhase::kConfirm;
+    return again;
+  }
+
+ private:
+  std::shared_ptr<const LoopSamples> samples_;
+};
 
 class LoopCampaign {
  public:
@@ -74,6 +95,7 @@ class LoopCampaign {
     if (!samples_.continue_from(*journal_)) return sink_.already_reported();
     const auto ended = sample();
     result_.failed = !ended;
+    if (ended && *ended != End::kStopped && *ended != End::kLost) repeat_first_clean();
     if (result_.failed && tally_.runs() == 0) return sink_.already_reported();
     return finished(!ended || *ended == End::kStopped);
   }
@@ -91,6 +113,7 @@ class LoopCampaign {
 
   /// Called in a worker's thread; by then the journal is open.
   void keep(const SampleRecord& record) {
+    if (is_repeating_) return;  // no sample, and on no journal
     const bool is_result =
         record.status == SampleStatus::kOk || record.status == SampleStatus::kLost;
     if (is_result) journal_->append(record);
@@ -195,9 +218,30 @@ class LoopCampaign {
       if (loop.unfinished++ == 0) loop.why_unfinished = unfinished;
     }
     tell(record, unfinished.empty() ? "clean" : "unfinished");
+    if (unfinished.empty() && !clean_) clean_ = clean_sample(record);
     consumed_.push_back(std::move(record));
     if (unfinished.empty() || options_.keep_going) return std::optional<End>();
     return std::optional(End::kUnfinished);
+  }
+
+  CleanSample clean_sample(const SampleRecord& record) {
+    const auto is_clean = [this](const SampleRecord& again) -> std::optional<bool> {
+      const auto judgement =
+          judge_path(*scenario_.mapping, bench_.fluents(), feed_, again, scenario_.comparison());
+      if (!judgement.missing.empty()) return false;
+      if (judgement.admitted == base::Known::kUndecided || bench_.stopped()) return std::nullopt;
+      return judgement.admitted == base::Known::kYes &&
+             why_unfinished(*again.path, scenario_).empty();
+    };
+    return {record, std::make_shared<const RepeatedExecution>(samples_.samples()), is_clean};
+  }
+
+  /// Does the simulator do what it did at first? Only where something is claimed of clean runs.
+  void repeat_first_clean() {
+    if (!clean_ || !result_.discrepancies.empty()) return;
+    is_repeating_ = true;
+    sampled_ = {0.0, bench_.simulated_s(), bench_.runs_made()};
+    result_.repetition = repeat_clean(*clean_, bench_);
   }
 
   base::DiagnosticBuilder report_refused(const SampleRecord& record) {
@@ -351,6 +395,7 @@ class LoopCampaign {
     const auto& criterion = scenario_.criterion;
     auto& stream = stream_;
     stream.law = law_.result();
+    stream.left_out = law_.drawn().left_out;
     const bool decided =
         criterion_->decide(tally_).stop && stream.loop->unfinished == 0 && is_covered();
     stream.verdict = !result_.discrepancies.empty() ? CampaignVerdict::kDiscrepancy
@@ -361,9 +406,9 @@ class LoopCampaign {
     const auto bound = certified_bound(tally_, criterion.confidence_level);
     stream.certified_level = bound.confidence_level;
     stream.certified_epsilon = bound.epsilon;
-    stream.claim = loop_claim(tally_, criterion, scenario_.comparison(),
-                              {stream.loop->initial_states, stream.loop->has_weights,
-                               stream.law ? stream.law->text() : std::string()});
+    stream.claim =
+        loop_claim(tally_, criterion, scenario_.comparison(),
+                   {stream.loop->initial_states, stream.loop->has_weights, law_.drawn()});
     stream.caveats = caveats(tally_, criterion, std::nullopt);
     if (feed_.plan().performs().empty()) {
       stream.caveats.emplace_back("the plan performs nothing: initial states alone were compared");
@@ -383,8 +428,14 @@ class LoopCampaign {
     stream.loop->causes_level = kRateLevel;
     const auto rated = lost_too_often_ ? rated_.planned() : rated_.counted();
     stream.loop->causes_unseen = rated - stream.loop->causes_runs;
+    // What stopped the run is no plan of it: the number of executions was not fixed.
+    const auto set = result_.interrupted ? set_anytime_interval : set_interval;
     for (auto& rate : causes) {
-      set_interval(rate, stream.loop->causes_runs, stream.loop->causes_unseen, kRateLevel);
+      set(rate, stream.loop->causes_runs, stream.loop->causes_unseen, kRateLevel);
+    }
+    if (!causes.empty() && result_.interrupted) {
+      stream.caveats.emplace_back(
+          "the run was stopped, so the intervals of causes are those that hold whenever one looks");
     }
     if (!causes.empty() && stream.loop->causes_unseen > 0) {
       stream.caveats.push_back(unseen_text(stream.loop->causes_unseen));
@@ -439,15 +490,21 @@ class LoopCampaign {
     if (!interrupted && !result_.failed) {
       if (!journal_->rewrite({}, std::move(consumed_), sink_)) return sink_.already_reported();
     }
+    result_.interrupted = interrupted;
     fill_cover();
     fill_stream();
-    result_.interrupted = interrupted;
     result_.verdict = interrupted && stream_.verdict != CampaignVerdict::kDiscrepancy
                           ? CampaignVerdict::kInconclusive
                           : stream_.verdict;
     result_.simulations = stream_.simulations;
     result_.traces.push_back(std::move(stream_));
+    apply_repetition(result_);
+    if (!result_.repetition.holds()) result_.verdict = CampaignVerdict::kInconclusive;
     note_timing(bench_, started_, result_);
+    if (is_repeating_) {
+      result_.timing.runs_made = sampled_.runs_made;
+      result_.timing.simulated_s = sampled_.simulated_s;
+    }
     return std::move(result_);
   }
 
@@ -471,6 +528,9 @@ class LoopCampaign {
   CampaignResult result_;
   TraceResult stream_;
   std::vector<SampleRecord> consumed_;
+  std::optional<CleanSample> clean_;  // the first
+  bool is_repeating_ = false;         // set before workers repeat it
+  CampaignResult::Timing sampled_;    // what samples took, before it was repeated
   bool lost_too_often_ = false;
   LoopStream samples_;
   RunRecorder recorder_;

@@ -11,6 +11,7 @@
 #include "harness/campaign/search_phase.h"
 #include "harness/campaign/start_law.h"
 #include "harness/campaign/trial.h"
+#include "harness/confidence/rounding.h"
 
 namespace parallax::harness {
 namespace {
@@ -64,7 +65,8 @@ class RareEstimator {
     rate.trace = trace.events();
     LawCounter law;
     law.name(trial->plan().sampler);
-    if (law.result()) rate.law = law.result()->text();
+    rate.law = law.drawn().law;
+    rate.left_out = law.drawn().left_out;
     const UnitCube cube(trial->plan().sampler);
     RareEventOptions options;
     options.method = method_;
@@ -183,9 +185,10 @@ std::string why_unanswered(const RareTraceRate& rate, const RareRatesResult& res
             result.budget);
       }
       return fmt::format(
-          "not resolved: none of the {} runs that count gave a discrepancy, so with {:g} % "
-          "confidence fewer than {:.3g} of the starts do; give more --runs",
-          estimate.runs - estimate.exploring, 100.0 * result.confidence, estimate.upper);
+          "not resolved: none of the {} runs that count gave a discrepancy, so with {} "
+          "confidence fewer than {} of the starts do; give more --runs",
+          estimate.runs - estimate.exploring, level_text(result.confidence),
+          small_figure(estimate.upper, Round::kUp));
     case RareEventEnd::kFlat:
       return "no margin of the first runs changed, so none leads to discrepancies; --method "
              "importance needs none, nor does counting (no --method)";

@@ -12,8 +12,9 @@ namespace parallax::harness {
 /// How often one trace goes wrong, where that is too seldom to be counted.
 struct RareTraceRate {
   std::int64_t number = 0;
-  std::string trace;  // its events
-  std::string law;    // that starts are drawn by, as LawResult::text; empty: uniform
+  std::string trace;     // its events
+  std::string law;       // that starts are drawn by, as LawResult::text; empty: uniform
+  std::string left_out;  // what of the start region is never drawn
   RareEventResult estimate;
   std::vector<std::string> contradicting;  // parts of margins that were left out
 };

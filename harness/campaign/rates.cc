@@ -47,10 +47,24 @@ class Estimator {
         visit_asked_traces(bench_, traces_, options_.trace, scenario_.name, visit, sink_);
     if (!complete) return sink_.already_reported();
     result.complete = *complete;
+    if (!result.complete && !lost_too_often_) forget_plan(result);
     return result;
   }
 
  private:
+  /// What stopped the runs is no plan of theirs: their number was not fixed, so the intervals
+  /// become those that hold whenever one looks.
+  void forget_plan(RatesResult& result) const {
+    result.fixed_runs = false;
+    for (auto& trace : result.traces) {
+      trace.unseen = trace.lost;
+      for (auto& rate : trace.causes) {
+        set_anytime_interval(rate, trace.runs, trace.unseen, options_.confidence);
+      }
+      set_anytime_interval(trace.any, trace.runs, trace.unseen, options_.confidence);
+    }
+  }
+
   base::Result<TraceRates> one_trace(CampaignTrace found, bool& complete) {
     auto trial = Trial::prepare(bench_, std::move(found));
     if (!trial) return sink_.already_reported();
@@ -62,14 +76,13 @@ class Estimator {
     LawCounter law;
     const auto& plan = trial->plan();
     law.name(plan.sampler);
-    bool lost_too_often = false;
     bool enough = false;
     while (complete && !enough && trial->next_sample() <= options_.runs) {
       trial->submit_to(last_wanted(trial->next_sample()));
       const auto sample = trial->next();
       if (!sample) return sink_.already_reported();
-      lost_too_often = *sample && (*sample)->verdict == SampleVerdict::kLostTooOften;
-      complete = *sample && !lost_too_often;
+      lost_too_often_ = *sample && (*sample)->verdict == SampleVerdict::kLostTooOften;
+      complete = *sample && !lost_too_often_;
       if (*sample) {
         law.add(plan.sampler, plan.campaign_seed, plan.trace_key, (*sample)->record);
         count(trace, **sample, rates, causes);
@@ -79,8 +92,9 @@ class Estimator {
     }
     trial->end();
     rates.law = law.result();
+    rates.left_out = law.drawn().left_out;
     // Bounds that hold at any time need nothing of what was not made.
-    rates.unseen = runs_are_fixed() && lost_too_often ? options_.runs - rates.runs : rates.lost;
+    rates.unseen = runs_are_fixed() && lost_too_often_ ? options_.runs - rates.runs : rates.lost;
     finish(rates, causes);
     return rates;
   }
@@ -169,6 +183,7 @@ class Estimator {
   const RatesOptions& options_;
   base::DiagnosticSink& sink_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  bool lost_too_often_ = false;  // which ended the runs
   TrialBench bench_;
 };
 

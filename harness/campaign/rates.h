@@ -21,6 +21,7 @@ struct TraceRates {
   std::int64_t unseen = 0;
   std::int64_t rejected = 0;      // invalid starts that were drawn again
   std::optional<LawResult> law;   // none: starts are uniform
+  std::string left_out;           // what of the start region is never drawn
   CauseRate any;                  // any discrepancy at all
   std::vector<CauseRate> causes;  // most frequent first
 };
@@ -46,7 +47,9 @@ struct RatesResult {
   std::string scenario;
   std::uint64_t seed = 0;
   double confidence = 0.0;
-  bool fixed_runs = true;    // false: intervals hold at any time, else for a fixed number of runs
+  /// Intervals are for a number of runs fixed in advance. False: what was seen, or somebody, ended
+  /// them, and intervals hold at any time.
+  bool fixed_runs = true;
   double until_width = 0.0;  // what was asked for, as in RatesOptions
   std::optional<RateClaim> until_known;
   Comparison comparison = Comparison::kEveryStep;

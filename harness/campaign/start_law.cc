@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "harness/confidence/rounding.h"
 #include "harness/sampling/law_draw.h"
 
 namespace parallax::harness {
@@ -27,11 +28,21 @@ std::string LawResult::refused_text() const {
   for (const auto& [text, count] : conditions) {
     if (count > 0) parts.push_back(fmt::format("`{}` {}", text, count));
   }
-  return fmt::format("{} of {} candidates ({:.1f} %){}{}", refused, drawn + refused,
-                     100.0 * refused_share(), parts.empty() ? "" : ": ", fmt::join(parts, ", "));
+  return fmt::format("{} of {} candidates ({}){}{}", refused, drawn + refused,
+                     percent_about(refused_share()), parts.empty() ? "" : ": ",
+                     fmt::join(parts, ", "));
+}
+
+std::string left_out_text(const Sampler& sampler) {
+  constexpr double kShown = 1e-3;
+  const double share = sampler.rim_share();
+  const bool is_given = sampler.inset() != Sampler::kDefaultInset;
+  if (share <= 0.0 || (!is_given && share <= kShown)) return {};
+  return fmt::format("its rim (`inset_m`: {})", sampler.inset());
 }
 
 void LawCounter::name(const Sampler& sampler) {
+  if (auto text = left_out_text(sampler); !text.empty()) left_out_ = std::move(text);
   const auto* law = sampler.law();
   if (law == nullptr) return;
   if (!result_) result_.emplace();
@@ -43,9 +54,10 @@ void LawCounter::name(const Sampler& sampler) {
 
 void LawCounter::add(const Sampler& sampler, std::uint64_t campaign_seed, std::uint64_t trace_key,
                      const SampleRecord& record) {
-  const auto* law = sampler.law();
-  if (law == nullptr || record.searched) return;
+  if (record.searched) return;
   name(sampler);
+  const auto* law = sampler.law();
+  if (law == nullptr) return;
   const auto texts = law->conditions();
   std::vector<std::int64_t> refusals(texts.size());
   for (std::int64_t attempt = 0; attempt <= record.attempt; ++attempt) {

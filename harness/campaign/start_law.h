@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "harness/campaign/sample_record.h"
+#include "harness/confidence/criterion.h"
 #include "harness/sampling/sampler.h"
 
 namespace parallax::harness {
@@ -30,6 +31,11 @@ struct LawResult {
   std::string refused_text() const;
 };
 
+/// What of the start region the sampler never draws, for a claim: "its rim (`inset_m`: 0.05)".
+/// Empty where that is nothing, or the default inset and less than a thousandth of the region: the
+/// figures of a claim have three digits.
+std::string left_out_text(const Sampler& sampler);
+
 /// Counts over samples, which are drawn once more for it.
 class LawCounter {
  public:
@@ -40,8 +46,11 @@ class LawCounter {
   void name(const Sampler& sampler);
   /// None: all starts are uniform in their cuboids.
   const std::optional<LawResult>& result() const { return result_; }
+  /// How all starts are drawn, for a claim about them.
+  DrawnStarts drawn() const { return {result_ ? result_->text() : std::string(), left_out_}; }
 
  private:
+  std::string left_out_;
   std::optional<LawResult> result_;
 };
 

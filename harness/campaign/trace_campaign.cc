@@ -36,9 +36,11 @@ class TraceCampaign {
     auto& result = outcome_.result;
     result.trace = trial_.plan().trace;
     result.start_region = trial_.start().dimensions;
-    result.start_shares =
-        start_shares(*context.scenario.mapping, as_set(result.trace->holds(0)), trial_.start());
     law_.name(trial_.plan().sampler);
+    result.left_out = law_.drawn().left_out;
+    result.start_shares =
+        start_shares(*context.scenario.mapping, as_set(result.trace->holds(0)), trial_.start(),
+                     result.left_out.empty() ? 0.0 : trial_.plan().sampler.inset());
   }
 
   base::Result<TraceOutcome> run() {
@@ -160,6 +162,8 @@ class TraceCampaign {
         break;
     }
     tell(sample, nullptr);
+    if (!is_lost && !outcome_.first_clean)
+      outcome_.first_clean = trial_.clean_sample(sample.record);
     outcome_.consumed.push_back(std::move(sample.record));
     if (sample.verdict == SampleVerdict::kLostTooOften) return TraceEnd::kLostTooOften;
     return std::nullopt;
@@ -245,8 +249,7 @@ class TraceCampaign {
       result.claim =
           "a search found a discrepancy; nothing is claimed about how often there is one";
     } else {
-      result.claim = claim(tally_, spec_, context_.scenario.comparison(),
-                           result.law ? result.law->text() : std::string());
+      result.claim = claim(tally_, spec_, context_.scenario.comparison(), law_.drawn());
       result.caveats = caveats(tally_, spec_, result.paper_stopped_at);
     }
     if (result.search) add_search_caveats(*result.search, result);

@@ -24,6 +24,7 @@ struct TraceOutcome {
   TraceResult result;
   std::optional<Discrepancy> discrepancy;
   std::vector<SampleRecord> consumed;  // in order of the sample index, repetitions after theirs
+  std::optional<CleanSample> first_clean;
 };
 
 /// What all traces of a campaign share.

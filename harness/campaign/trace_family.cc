@@ -31,6 +31,7 @@ bool TraceFamily::look_at_next() {
   failed_ = !trace;
   ended_ = failed_ || !*trace;
   if (!ended_) ahead_.push_back(std::move(**trace));
+  if (ended_ && !failed_) exploration_ = feed_.exploration();
   return !ended_;
 }
 
@@ -43,7 +44,7 @@ void TraceFamily::find_rule() {
   // An error is a trace that cannot be simulated, and nobody knows what would follow it.
   if (failed_ || (!is_limited && seen() == most)) {
     rule_.emplace(std::nullopt);
-  } else if (!ended_ || feed_.exploration() != "stopped") {
+  } else if (!ended_ || exploration_ != "stopped") {
     rule_.emplace(seen());
   }
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <string>
 
 #include "compiler/base/diagnostic.h"
 #include "harness/campaign/trace_input.h"
@@ -35,6 +36,11 @@ class TraceFamily {
   bool is_settled() const { return family_ == Family::kPerTrace || looked_; }
   /// How the error is shared. None: not asked for, not known, or each trace is claimed by itself.
   const std::optional<SpendingRule>& rule() const { return rule_; }
+  /// How far the search for traces came, whatever became of their simulations: "all traces
+  /// explored", "complete up to bound", or "stopped" where it was not followed to its end.
+  const std::string& exploration() const { return exploration_; }
+  /// Whether every trace that the search found was given.
+  bool all_given() const { return ahead_.empty(); }
 
  private:
   std::int64_t seen() const { return given_ + static_cast<std::int64_t>(ahead_.size()); }
@@ -49,6 +55,7 @@ class TraceFamily {
   std::int64_t given_ = 0;
   bool ended_ = false, failed_ = false;  // of the feed
   bool looked_ = false;
+  std::string exploration_ = "stopped";
   std::optional<SpendingRule> rule_;
 };
 

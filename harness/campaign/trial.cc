@@ -83,8 +83,29 @@ SimulatorBench::SimulatorBench(const Scenario& scenario, const compiler::SymbolT
       options_(options),
       sink_(sink),
       fluents_(symbols),
+      make_simulator_(make_simulator),
       pool_(options.jobs, make_simulator, std::move(finished), options.stop, options.moved) {
   PARALLAX_REQUIRE(scenario.mapping.has_value(), "a scenario that was loaded without errors");
+}
+
+std::optional<SampleRecord> SimulatorBench::repeat(const std::shared_ptr<const SampleMaker>& maker,
+                                                   const SampleRecord& record) {
+  pool_.abandon();
+  pool_.submit_repeat(maker, record);
+  return pool_.wait(record.sample, DrawPhase::kConfirm);
+}
+
+std::optional<SampleRecord> SimulatorBench::repeat_fresh(
+    const std::shared_ptr<const SampleMaker>& maker, const SampleRecord& record) {
+  pool_.close();
+  WorkerPool fresh(
+      1, make_simulator_, [](const SampleRecord&) {}, options_.stop);
+  fresh.submit_repeat(maker, record);
+  auto again = fresh.wait(record.sample, DrawPhase::kConfirm);
+  fresh.close();
+  fresh_runs_ += fresh.runs_made();
+  fresh_simulated_s_ += fresh.simulated_s();
+  return again;
 }
 
 bool SimulatorBench::lost_too_often(const SampleRecord& record, bool on_record) {
@@ -378,6 +399,20 @@ base::DiagnosticBuilder Trial::report_missing(const SampleRecord& record,
       fmt::format("does not show what is compared in simulation {} of trace {}", record.sample,
                   record.trace),
       fmt::format("its observations lack `{}`", variable));
+}
+
+CleanSample Trial::clean_sample(const SampleRecord& record) const {
+  const auto is_clean = [bench = bench_, plan = plan_](const SampleRecord& again) {
+    const auto& scenario = bench->scenario_;
+    const auto judgement =
+        judge(*scenario.mapping, bench->fluents_, *plan->trace, again.observations);
+    if (!judgement.missing.empty() || judgement.first_divergence == 0) return std::optional(false);
+    if (judgement.matches(scenario.comparison())) return std::optional(true);
+    const auto admitted = admitted_by_model(scenario, bench->feed_, *plan->trace, judgement);
+    if (admitted == base::Known::kUndecided || bench->stopped()) return std::optional<bool>();
+    return std::optional(admitted == base::Known::kYes);
+  };
+  return {record, samples_, is_clean};
 }
 
 std::optional<SampleRecord> Trial::repeat(const SampleRecord& record) {

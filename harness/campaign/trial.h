@@ -9,6 +9,7 @@
 
 #include "compiler/base/diagnostic.h"
 #include "harness/campaign/judge.h"
+#include "harness/campaign/repetition.h"
 #include "harness/campaign/sample_row.h"
 #include "harness/campaign/sample_runner.h"
 #include "harness/campaign/trace_input.h"
@@ -71,10 +72,18 @@ class SimulatorBench {
   /// A simulation was observed.
   void end_row_of_losses() { lost_in_a_row_ = 0; }
 
-  /// Ends the workers. Nothing may be simulated afterwards.
+  /// Simulates the start and seed of `record` once more, in a worker that may have made others
+  /// before. What ran ahead is forgotten. None when stopped.
+  std::optional<SampleRecord> repeat(const std::shared_ptr<const SampleMaker>& maker,
+                                     const SampleRecord& record);
+  /// The same by a simulator that is started for it, when the workers have ended.
+  std::optional<SampleRecord> repeat_fresh(const std::shared_ptr<const SampleMaker>& maker,
+                                           const SampleRecord& record);
+
+  /// Ends the workers. Nothing may be simulated by them afterwards.
   void close() { pool_.close(); }
-  std::int64_t runs_made() const { return pool_.runs_made(); }
-  double simulated_s() const { return pool_.simulated_s(); }
+  std::int64_t runs_made() const { return pool_.runs_made() + fresh_runs_; }
+  double simulated_s() const { return pool_.simulated_s() + fresh_simulated_s_; }
 
  protected:
   const Scenario& scenario_;
@@ -83,6 +92,9 @@ class SimulatorBench {
   ModelFluents fluents_;
   SimulatorInfo simulator_;
   std::int64_t lost_in_a_row_ = 0;
+  SimulatorFactory make_simulator_;
+  std::int64_t fresh_runs_ = 0;  // by simulators that were started for one
+  double fresh_simulated_s_ = 0.0;
   WorkerPool pool_;
 };
 
@@ -167,6 +179,8 @@ class Trial {
   void begin_after(std::int64_t sample);
   /// Simulates the start and seed of `record` once more. None when stopped.
   std::optional<SampleRecord> repeat(const SampleRecord& record);
+  /// The simulation on record, and how it is made and judged again; it was clean.
+  CleanSample clean_sample(const SampleRecord& record) const;
   /// Forgets what ran ahead.
   void end() { bench_->pool_.abandon(); }
 

@@ -10,12 +10,10 @@
 #include "compiler/base/contract.h"
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/criterion_spec.h"
+#include "harness/confidence/rounding.h"
 
 namespace parallax::harness {
 namespace {
-
-/// Rounds to six digits, which shows 99 and 99.9 as they were typed.
-std::string level_text(double level) { return fmt::format("{:.6g} %", 100.0 * level); }
 
 std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
@@ -33,8 +31,8 @@ std::string rejected_text(const Tally& tally) {
   const std::int64_t drawn = tally.rejected() + tally.runs();
   const double share = static_cast<double>(tally.rejected()) / static_cast<double>(drawn);
   return fmt::format(
-      "the claim is about start states that are valid: {} of {} drawn were rejected ({:.1f} %)",
-      tally.rejected(), drawn, 100.0 * share);
+      "the claim is about start states that are valid: {} of {} drawn were rejected ({})",
+      tally.rejected(), drawn, percent_about(share));
 }
 
 /// What no criterion goes on after.
@@ -200,17 +198,6 @@ PaperRuleSpec paper_repaired() {
   return spec;
 }
 
-std::string percent_up(double probability) {
-  const double value = 100.0 * probability;
-  if (!(value > 0.0)) return "0 %";
-  constexpr int kDigits = 3;
-  // A bound that was typed, like 0.05, must not be rounded up for its last binary digit.
-  constexpr double kNoise = 1e-12;
-  const int decimals = kDigits - 1 - static_cast<int>(std::floor(std::log10(value)));
-  const double scale = std::pow(10.0, decimals);
-  return fmt::format("{:.{}g} %", std::ceil(value * scale * (1.0 - kNoise)) / scale, kDigits + 1);
-}
-
 namespace {
 
 /// `what` gives a discrepancy with a small probability, or what else can be said.
@@ -226,9 +213,10 @@ std::string claim_about(const Tally& tally, const CriterionSpec& spec, std::stri
   }
   // Runs that were planned for an epsilon support that one; the bound itself is a little smaller.
   const bool as_planned = spec.kind != CriterionKind::kPaper && bound.epsilon <= spec.epsilon;
-  return fmt::format(
-      "with {} confidence, fewer than {} of {} {} ({})", level_text(bound.confidence_level),
-      percent_up(as_planned ? spec.epsilon : bound.epsilon), what, does, runs_text(tally));
+  return fmt::format("with {} confidence, fewer than {} of {} {} ({}){}",
+                     level_text(bound.confidence_level),
+                     percent_up(as_planned ? spec.epsilon : bound.epsilon), what, does,
+                     runs_text(tally), kSupposition);
 }
 
 std::string_view when(Comparison comparison) {
@@ -237,23 +225,25 @@ std::string_view when(Comparison comparison) {
 
 }  // namespace
 
-std::string drawn_from(std::string_view region, std::string_view law) {
-  if (law.empty()) return fmt::format("drawn uniformly from {}", region);
-  return fmt::format("drawn from {} by the scenario's law ({})", region, law);
+std::string drawn_from(std::string_view region, const DrawnStarts& drawn) {
+  const auto from = drawn.left_out.empty() ? std::string(region)
+                                           : fmt::format("{} without {}", region, drawn.left_out);
+  if (drawn.law.empty()) return fmt::format("drawn uniformly from {}", from);
+  return fmt::format("drawn from {} by the scenario's law ({})", from, drawn.law);
 }
 
 std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,
-                  std::string_view law) {
+                  const DrawnStarts& drawn) {
   return claim_about(tally, spec,
                      fmt::format("{}start states {}", tally.rejected() > 0 ? "valid " : "",
-                                 drawn_from("the start region", law)),
+                                 drawn_from("the start region", drawn)),
                      fmt::format("give a discrepancy {}", when(comparison)));
 }
 
 std::string loop_claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,
                        const StartLaw& starts) {
   const std::string_view valid = tally.rejected() > 0 ? "the valid part of " : "";
-  const auto drawn = drawn_from(fmt::format("{}its region", valid), starts.law);
+  const auto drawn = drawn_from(fmt::format("{}its region", valid), starts.drawn);
   const auto from =
       starts.initial_states == 1
           ? fmt::format("the only initial state{}, {},",

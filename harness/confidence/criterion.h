@@ -102,20 +102,29 @@ CertifiedBound certified_bound(const Tally& tally, double confidence_level, doub
 /// `clopper-pearson` its bound at C once all its runs were made. Else the certified bound.
 CertifiedBound stated_bound(const Tally& tally, const CriterionSpec& spec);
 
+/// How starts are drawn, in words.
+struct DrawnStarts {
+  std::string law{};  // where they are not drawn uniformly
+  /// What of the region is never drawn: "its rim (`inset_m`: 0.05)". Empty: nothing that counts.
+  std::string left_out{};
+};
+
 /// Exactly what the runs of one trace support, as one sentence without a full stop: "with 99 %
 /// confidence, fewer than 5 % of start states drawn uniformly from the start region give a
-/// discrepancy (90 clean runs of 90)". Figures are rounded up, so never beyond the evidence. `law`:
-/// in words, where starts are not drawn uniformly.
+/// discrepancy (90 clean runs of 90), supposing that no run affects another". Figures are rounded
+/// up, so never beyond the evidence.
 std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,
-                  std::string_view law = {});
-/// "drawn uniformly from the start region", or by which law.
-std::string drawn_from(std::string_view region, std::string_view law);
+                  const DrawnStarts& drawn = {});
+/// "drawn uniformly from the start region", or by which law, and from what of it.
+std::string drawn_from(std::string_view region, const DrawnStarts& drawn);
+/// The supposition of every claim about how often runs go wrong, which ends its sentence.
+inline constexpr std::string_view kSupposition = ", supposing that no run affects another";
 
 /// The initial states that executions begin in, and whether they are drawn by weights.
 struct StartLaw {
   std::int64_t initial_states = 0;
   bool has_weights = false;
-  std::string law{};  // as of `claim`
+  DrawnStarts drawn{};
 };
 /// The same of executions of a plan from any of the model's initial states: "with 99 % confidence,
 /// fewer than 5 % of executions from 3 initial states, each equally likely and drawn uniformly from
@@ -132,9 +141,5 @@ std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec,
 /// "paper-literal, n = 2": the reading of the paper's rule and its number of varying initial
 /// parameters.
 std::string paper_variant(const Tally& tally, const PaperRuleSpec& spec);
-
-/// A probability in per cent with a blank, at most three significant digits, rounded up: "5 %",
-/// "48.3 %".
-std::string percent_up(double probability);
 
 }  // namespace parallax::harness

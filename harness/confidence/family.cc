@@ -7,6 +7,7 @@
 
 #include "compiler/base/contract.h"
 #include "harness/confidence/criterion.h"
+#include "harness/confidence/rounding.h"
 
 namespace parallax::harness {
 namespace {
@@ -52,12 +53,14 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
   bool rejected = false;
   const std::string* law = nullptr;
   bool one_law = true;
+  DrawnStarts drawn;
   CertifiedBound worst{spec.confidence_level, 0.0};
   for (const auto& member : members) {
     if (member.is_discrepancy) continue;
     ++claimed;
-    one_law = one_law && (law == nullptr || *law == member.law);
-    law = &member.law;
+    one_law = one_law && (law == nullptr || *law == member.drawn.law);
+    law = &member.drawn.law;
+    if (!member.drawn.left_out.empty()) drawn.left_out = member.drawn.left_out;
     clean += member.clean;
     lost += member.lost;
     runs += member.runs;
@@ -66,6 +69,7 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
     worst.confidence_level = std::min(worst.confidence_level, member.stated.confidence_level);
     worst.epsilon = std::max(worst.epsilon, member.stated.epsilon);
   }
+  if (law != nullptr) drawn.law = one_law ? *law : std::string("of each trace");
   if (claimed == 0 || worst.epsilon >= 1.0 || worst.confidence_level <= 0.0) return {};
   const auto all = std::ssize(members);
   const auto of_traces =
@@ -82,14 +86,13 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
                 : fmt::format(", {} lost {} counted as {}", lost, lost == 1 ? "run" : "runs",
                               lost == 1 ? "a failure" : "failures");
   auto text = fmt::format(
-      "with {:.6g} % confidence, {}fewer than {} of {}start states {} give a discrepancy {} ({} "
-      "clean {} of {}{})",
-      100.0 * worst.confidence_level, of_traces,
+      "with {} confidence, {}fewer than {} of {}start states {} give a discrepancy {} ({} "
+      "clean {} of {}{}){}",
+      level_text(worst.confidence_level), of_traces,
       percent_up(as_planned ? spec.epsilon : worst.epsilon), rejected ? "valid " : "",
-      drawn_from(all == 1 ? "the start region" : "its start region",
-                 one_law ? *law : std::string("of each trace")),
+      drawn_from(all == 1 ? "the start region" : "its start region", drawn),
       comparison == Comparison::kFinal ? "in the last state" : "at any step", clean,
-      clean == 1 ? "run" : "runs", runs, lost_text);
+      clean == 1 ? "run" : "runs", runs, lost_text, kSupposition);
   if (!scope.completeness.empty()) text += "; " + scope.completeness;
   if (scope.split_initial) {
     text += "; each initial state that leads to the same events counts as a trace";
@@ -105,12 +108,12 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
 
 std::string criterion_text(const CriterionSpec& spec, const std::optional<SpendingRule>& rule) {
   if (spec.kind == CriterionKind::kPaper) {
-    return fmt::format("paper ({}) at C = {:.6g} %; not a probability of error", spec.paper.preset,
-                       100.0 * spec.confidence_level);
+    return fmt::format("paper ({}) at C = {}; not a probability of error", spec.paper.preset,
+                       level_text(spec.confidence_level));
   }
   const auto epsilon = percent_up(spec.epsilon);
   const auto confidence =
-      fmt::format("{:.6g} % confidence{}", 100.0 * spec.confidence_level,
+      fmt::format("{} confidence{}", level_text(spec.confidence_level),
                   rule && rule->traces() != 1 ? " in all of them together" : "");
   if (spec.kind == CriterionKind::kAnytime) {
     return fmt::format("anytime: {} exclude p >= {} with {}, more after lost ones",

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "harness/confidence/comparison.h"
+#include "harness/confidence/criterion.h"
 #include "harness/confidence/criterion_spec.h"
 #include "harness/confidence/spending.h"
 
@@ -18,7 +19,7 @@ struct FamilyMember {
   bool is_rejected = false;     // of its starts some were not valid
   bool is_first_start = false;  // other initial states lead to the same events
   CertifiedBound stated;        // by the criterion, with the trace's share of the error
-  std::string law{};            // of its starts, in words; empty: they are uniform
+  DrawnStarts drawn{};          // how its starts are drawn
 };
 
 /// What the traces are among all of the model's.

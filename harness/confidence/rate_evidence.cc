@@ -77,9 +77,9 @@ void require_rate_counts(const RateCounts& counts) {
 }  // namespace
 
 std::string to_string(const RateClaim& claim) {
-  if (claim.lower <= 0.0) return fmt::format("below {:g} %", 100 * claim.upper);
-  if (claim.upper >= 1.0) return fmt::format("above {:g} %", 100 * claim.lower);
-  return fmt::format("from {:g} to {:g} %", 100 * claim.lower, 100 * claim.upper);
+  if (claim.lower <= 0.0) return fmt::format("below {:.10g} %", 100 * claim.upper);
+  if (claim.upper >= 1.0) return fmt::format("above {:.10g} %", 100 * claim.lower);
+  return fmt::format("from {:.10g} to {:.10g} %", 100 * claim.lower, 100 * claim.upper);
 }
 
 Evidence weigh(const RateClaim& claim, const RateCounts& counts) {

@@ -67,8 +67,13 @@ StartShare share_of(const std::string& body, const Region& region, const StartCu
 }  // namespace
 
 std::vector<StartShare> start_shares(const StateMapping& mapping,
-                                     const std::set<std::string>& true_fluents,
-                                     const StartCuboid& start) {
+                                     const std::set<std::string>& true_fluents, StartCuboid start,
+                                     double inset) {
+  for (auto& [variable, interval] : start.dimensions) {
+    if (interval.lower == interval.upper) continue;
+    interval.lower += inset;
+    interval.upper -= inset;
+  }
   std::vector<StartShare> shares;
   for (const std::string& text : true_fluents) {
     const GroundFluent fluent = ground_fluent(text);

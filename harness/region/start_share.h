@@ -21,10 +21,10 @@ struct StartShare {
   std::vector<std::string> fixed;  // bounded axes on which all starts have one value
 };
 
-/// Of each body that a fluent of `true_fluents` puts into a region; `start` is their start_cuboid.
-/// By body.
+/// The shares of all bodies that a fluent of `true_fluents` puts into a region, sorted by body.
+/// `start` is their start_cuboid, of whose intervals the ends are not drawn, `inset` [m, rad] wide.
 std::vector<StartShare> start_shares(const StateMapping& mapping,
-                                     const std::set<std::string>& true_fluents,
-                                     const StartCuboid& start);
+                                     const std::set<std::string>& true_fluents, StartCuboid start,
+                                     double inset = 0.0);
 
 }  // namespace parallax::harness

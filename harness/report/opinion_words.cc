@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "compiler/base/json.h"
-#include "harness/confidence/criterion.h"
+#include "harness/confidence/rounding.h"
 #include "harness/report/report_words.h"
 
 namespace parallax::harness {
@@ -71,7 +71,7 @@ std::string clean_sentence(const SecondOpinion& opinion) {
   if (none > 0) text += fmt::format(", {} without an answer", none);
   return text +
          fmt::format("; with {} confidence the engines part in less than {} of what is clean in {}",
-                     level(opinion.level), percent_up(opinion.disagreement_upper()), first);
+                     level_text(opinion.level), percent_up(opinion.disagreement_upper()), first);
 }
 
 }  // namespace

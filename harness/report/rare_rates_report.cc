@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/base/json.h"
+#include "harness/confidence/rounding.h"
 #include "harness/report/report.h"
 
 namespace parallax::harness {
@@ -12,7 +13,7 @@ using RareJson = nlohmann::ordered_json;
 
 std::string what_it_rests_on(const RareRatesResult& result) {
   return result.method == RareEventMethod::kImportance
-             ? "they hold whatever the simulator does"
+             ? "they hold whatever the simulator does, supposing that no run affects another"
              : "they suppose that moves reach every place with discrepancies";
 }
 
@@ -62,20 +63,22 @@ bool has_interval(const RareEventResult& estimate, RareEventMethod method) {
 
 std::string rates_text(const RareRatesResult& result) {
   std::string out = fmt::format(
-      "{}, seed {}; {} compared; intervals with {:g} % confidence by {}: {}\n", result.scenario,
+      "{}, seed {}; {} compared; intervals with {} confidence by {}: {}\n", result.scenario,
       result.seed, result.comparison == Comparison::kFinal ? "last states" : "every step",
-      100.0 * result.confidence, to_string(result.method), what_it_rests_on(result));
+      level_text(result.confidence), to_string(result.method), what_it_rests_on(result));
   for (const RareTraceRate& trace : result.traces) {
     const auto& estimate = trace.estimate;
     out += fmt::format("\ntrace {}: {} runs, {} starts rejected, {} lost\n  {}\n", trace.number,
                        estimate.runs, estimate.invalid, estimate.lost, trace.trace);
     if (!trace.law.empty()) out += fmt::format("  starts: {}\n", trace.law);
+    if (!trace.left_out.empty()) out += fmt::format("  left out: {}\n", trace.left_out);
     const auto why = why_unanswered(trace, result);
     if (!why.empty()) {
       out += fmt::format("  {}\n", why);
     } else {
-      out += fmt::format("  {:.3g}  [{:.3g}, {:.3g}]  any discrepancy\n", estimate.probability,
-                         estimate.lower, estimate.upper);
+      out += fmt::format(
+          "  {}  [{}, {}]  any discrepancy\n", small_figure(estimate.probability, Round::kNearest),
+          small_figure(estimate.lower, Round::kDown), small_figure(estimate.upper, Round::kUp));
       out += result.method == RareEventMethod::kImportance ? importance_text(estimate)
                                                            : splitting_text(estimate);
     }
@@ -103,6 +106,7 @@ std::string rates_json(const RareRatesResult& result) {
                        {"lost", estimate.lost},          {"end", to_string(estimate.end)},
                        {"left_out", trace.contradicting}};
     if (!trace.law.empty()) object["law"] = trace.law;
+    if (!trace.left_out.empty()) object["left_out"] = trace.left_out;
     if (has_interval(estimate, result.method)) {
       object["any"] = interval_object(estimate, result.method);
     } else {

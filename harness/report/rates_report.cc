@@ -4,6 +4,8 @@
 
 #include "compiler/base/json.h"
 #include "harness/campaign/run_setup.h"
+#include "harness/confidence/criterion.h"
+#include "harness/confidence/rounding.h"
 #include "harness/report/law_json.h"
 #include "harness/report/report.h"
 #include "harness/simulator/state_json.h"
@@ -30,26 +32,28 @@ Json rate_object(const CauseRate& rate) {
   return object;
 }
 
-std::string percent(const CauseRate& rate) {
-  return fmt::format("{:5.1f} %  [{:.1f}, {:.1f}]", 100.0 * rate.rate, 100.0 * rate.lower,
-                     100.0 * rate.upper);
+std::string percent(const CauseRate& rate, std::int64_t runs) {
+  if (runs == 0) return "nothing is known";
+  return fmt::format("{:>7}  [{}, {}]", percent_about(rate.rate),
+                     percent_figure(rate.lower, Round::kDown),
+                     percent_figure(rate.upper, Round::kUp));
 }
 
 /// Whether it came out, before all runs were made, that the rate is as asked.
 std::string known_text(const RateClaim& claim, Evidence evidence) {
   const auto* is = evidence == Evidence::kSupports ? "it is" : "it is not";
-  return fmt::format("  {} {} (with {:g} % confidence)\n",
+  return fmt::format("  {} {} (with {} confidence)\n",
                      evidence == Evidence::kTooLittle ? "not known whether it is" : is,
-                     to_string(claim), 100.0 * claim.confidence_level);
+                     to_string(claim), level_text(claim.confidence_level));
 }
 
 }  // namespace
 
 std::string rates_text(const RatesResult& result) {
   std::string out = fmt::format(
-      "{}, seed {}; {} compared; intervals with {:g} % confidence ({})\n", result.scenario,
+      "{}, seed {}; {} compared; intervals with {} confidence ({}{})\n", result.scenario,
       result.seed, result.comparison == Comparison::kFinal ? "last states" : "every step",
-      100.0 * result.confidence, interval_name(result));
+      level_text(result.confidence), interval_name(result), kSupposition);
   for (const TraceRates& trace : result.traces) {
     out += fmt::format("\ntrace {}: {} runs, {} starts rejected, {} lost\n  {}\n", trace.number,
                        trace.runs, trace.rejected, trace.lost, trace.trace);
@@ -58,17 +62,18 @@ std::string rates_text(const RatesResult& result) {
       const auto refused = trace.law->refused_text();
       if (!refused.empty()) out += fmt::format("  refused: {}\n", refused);
     }
+    if (!trace.left_out.empty()) out += fmt::format("  left out: {}\n", trace.left_out);
     if (trace.unseen > 0) out += "  " + unseen_text(trace.unseen) + "\n";
     out += fmt::format("  {:>6} of {:<6} {:<26} any discrepancy\n", trace.any.count, trace.runs,
-                       percent(trace.any));
+                       percent(trace.any, trace.runs));
     if (result.until_known) out += known_text(*result.until_known, result.evidence(trace));
     if (result.is_too_wide(trace)) {
       out += fmt::format("  not as narrow as asked, {:g} points; give more --runs\n",
                          100.0 * result.until_width);
     }
     for (const CauseRate& rate : trace.causes) {
-      out += fmt::format("  {:>6} of {:<6} {:<26} {}\n", rate.count, trace.runs, percent(rate),
-                         rate.cause);
+      out += fmt::format("  {:>6} of {:<6} {:<26} {}\n", rate.count, trace.runs,
+                         percent(rate, trace.runs), rate.cause);
       out += fmt::format("{:46}first in sample {}{}{}\n", "", rate.example,
                          rate.reason.empty() ? "" : ": ", rate.reason);
       if (!rate.kind.empty()) out += fmt::format("{:46}kind of cause: {}\n", "", rate.kind);
@@ -105,6 +110,7 @@ std::string rates_json(const RatesResult& result) {
                                   {"causes", std::move(causes)}});
     auto& object = document["traces"].back();
     if (trace.law) object["law"] = law_json<Json>(*trace.law);
+    if (!trace.left_out.empty()) object["left_out"] = trace.left_out;
     if (result.until_width > 0.0) object["narrow"] = !result.is_too_wide(trace);
     if (!result.until_known) continue;
     const auto evidence = result.evidence(trace);

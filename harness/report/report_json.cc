@@ -178,6 +178,7 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
     }
   }
   if (result.law) out["law"] = law_json<Json>(*result.law);
+  if (!result.left_out.empty()) out["left_out"] = result.left_out;
   if (result.search) out["search"] = json_of(*result.search);
   out["claim"] = result.claim;
   out["caveats"] = result.caveats;
@@ -276,6 +277,15 @@ Json json_of(const CampaignResult& result, bool with_timing) {
   out["discrepancies"] = Json::array();
   for (const auto& found : result.discrepancies) {
     out["discrepancies"].push_back(json_of(result, found));
+  }
+  if (!result.repetition.repetitions.empty()) {
+    auto& repetition = out["repetition"];
+    repetition["sample"] = fmt::format("{}.{}", result.repetition.trace, result.repetition.sample);
+    for (const auto& one : result.repetition.repetitions) {
+      auto& told = repetition[one.is_fresh ? "fresh_simulator" : "after_the_others"];
+      told = {{"outcome", to_string(one.outcome)}};
+      if (!one.detail.empty()) told["detail"] = one.detail;
+    }
   }
   if (!result.coverage.empty()) {
     for (const auto& share : result.coverage) {

@@ -8,6 +8,7 @@
 #include "compiler/base/utf8.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/family.h"
+#include "harness/confidence/rounding.h"
 #include "harness/report/discrepancy_summary.h"
 #include "harness/report/opinion_words.h"
 #include "harness/report/report.h"
@@ -88,6 +89,9 @@ class Summary {
   }
 
   std::string why_inconclusive() const {
+    if (!result_.repetition.holds()) {
+      return "a clean simulation is not clean when it is repeated, so runs may affect each other";
+    }
     const auto open = std::count_if(
         result_.traces.begin(), result_.traces.end(),
         [](const auto& trace) { return trace.verdict == CampaignVerdict::kInconclusive; });
@@ -126,7 +130,7 @@ class Summary {
     if (trace.verdict == CampaignVerdict::kDiscrepancy) return {};
     return trace.certified_epsilon < 1.0
                ? fmt::format("p < {} with {} confidence", percent_up(trace.certified_epsilon),
-                             level(trace.certified_level))
+                             level_text(trace.certified_level))
                : std::string("nothing certified");
   }
 
@@ -227,9 +231,7 @@ class Summary {
     const auto& loop = *result_.traces.front().loop;
     for (std::size_t i = 0; i < loop.causes.size() && i <= kMaxFurther; ++i) {
       const auto& rate = loop.causes[i];
-      line("cause", fmt::format("{}: {}, {:.1f} % ({:g} % interval {:.1f} to {:.1f} %)", rate.cause,
-                                counted(rate.count, "run", "runs"), 100.0 * rate.rate,
-                                100.0 * loop.causes_level, 100.0 * rate.lower, 100.0 * rate.upper));
+      line("cause", fmt::format("{}: {}", rate.cause, rate_words(loop, rate)));
     }
     if (loop.causes.size() > kMaxFurther + 1) {
       line("cause", fmt::format("{} more", loop.causes.size() - kMaxFurther - 1));

@@ -8,6 +8,7 @@
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/family.h"
+#include "harness/confidence/rounding.h"
 #include "harness/report/opinion_words.h"
 #include "harness/report/report.h"
 #include "harness/report/report_words.h"
@@ -154,6 +155,7 @@ class TextReport {
     if (rows.empty()) return;
     constexpr std::string_view kLabel = "  start region";
     out_ += table(rows, kLabelEnd).replace(0, kLabel.size(), kLabel);
+    if (!trace.left_out.empty()) line("left out", trace.left_out + ", where no start is drawn");
     start_shares(trace);
   }
 
@@ -176,8 +178,7 @@ class TextReport {
       }
       if (!share.fixed.empty())
         parts.push_back("fixed " + fmt::format("{}", fmt::join(share.fixed, " ")));
-      rows.push_back({fmt::format("{} in {}", share.body, share.region),
-                      fmt::format("{:.3g} %", 100.0 * share.share),
+      rows.push_back({fmt::format("{} in {}", share.body, share.region), percent_down(share.share),
                       fmt::format("{}", fmt::join(parts, ", "))});
     }
     if (rows.empty()) return;
@@ -214,10 +215,7 @@ class TextReport {
   void causes(const LoopResult& loop) {
     for (const auto& rate : loop.causes) {
       line("cause",
-           fmt::format("{}: {}, {:.1f} % ({:g} % interval {:.1f} to {:.1f} %), first in 1.{}",
-                       rate.cause, counted(rate.count, "run", "runs"), 100.0 * rate.rate,
-                       100.0 * loop.causes_level, 100.0 * rate.lower, 100.0 * rate.upper,
-                       rate.example));
+           fmt::format("{}: {}, first in 1.{}", rate.cause, rate_words(loop, rate), rate.example));
     }
   }
 
@@ -236,10 +234,11 @@ class TextReport {
 
   void certified(const TraceResult& trace) {
     if (trace.verdict != CampaignVerdict::kDiscrepancy) {
-      line("certified", trace.certified_epsilon < 1.0
-                            ? fmt::format("with {} confidence p < {}", level(trace.certified_level),
-                                          percent_up(trace.certified_epsilon))
-                            : std::string("nothing"));
+      line("certified",
+           trace.certified_epsilon < 1.0
+               ? fmt::format("with {} confidence p < {}", level_text(trace.certified_level),
+                             percent_up(trace.certified_epsilon))
+               : std::string("nothing"));
     }
   }
 

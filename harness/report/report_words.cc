@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/confidence/criterion.h"
+#include "harness/confidence/rounding.h"
 
 namespace parallax::harness {
 
@@ -25,8 +25,6 @@ std::string verdict_word(CampaignVerdict verdict, bool color) {
 std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
-
-std::string level(double confidence) { return fmt::format("{:.6g} %", 100.0 * confidence); }
 
 std::string end_of(PathEnd end, const std::string& detail) {
   switch (end) {
@@ -70,6 +68,12 @@ std::string coverage_shares_text(const CampaignResult& result) {
   return out;
 }
 
+std::string rate_words(const LoopResult& loop, const CauseRate& rate) {
+  return fmt::format("{}, {} ({} interval {})", counted(rate.count, "run", "runs"),
+                     percent_about(rate.rate), level_text(loop.causes_level),
+                     percent_interval(rate.lower, rate.upper));
+}
+
 std::string cover_text(const CoverResult& cover) {
   using End = CoverResult::End;
   const auto left = std::ssize(cover.left);
@@ -82,7 +86,7 @@ std::string cover_text(const CoverResult& cover) {
   if (cover.bound < 1.0) {
     text += fmt::format("; {} comes in fewer than {} of executions ({} confidence{}, {})",
                         left == 1 ? "the other one" : "each of the others", percent_up(cover.bound),
-                        level(cover.confidence), left == 1 ? "" : " in all of them together",
+                        level_text(cover.confidence), left == 1 ? "" : " in all of them together",
                         counted(cover.drawn + cover.lost, "execution with a drawn start",
                                 "executions with a drawn start"));
   }

@@ -16,8 +16,6 @@ std::string painted(std::string_view text, const char* color, bool is_on);
 std::string verdict_word(CampaignVerdict verdict, bool color);
 /// "1 run", "2 runs"
 std::string counted(std::int64_t count, std::string_view one, std::string_view many);
-/// "99 %"
-std::string level(double confidence);
 /// "the plan fails with grasp-failed"
 std::string end_of(PathEnd end, const std::string& detail);
 /// "repeated bit for bit"
@@ -26,6 +24,8 @@ std::string confirmation(const Discrepancy& found);
 std::string exploration_text(const CampaignResult& result);
 /// "4 of 4 performs, 5 of 8 branches"; empty if it was not looked at.
 std::string coverage_shares_text(const CampaignResult& result);
+/// "12 runs, 30 % (95 % interval 21.2 to 40.1 %)"
+std::string rate_words(const LoopResult& loop, const CauseRate& rate);
 /// "12 of 14 behaviours of plan and model were shown; each of the others comes ..."
 std::string cover_text(const CoverResult& cover);
 /// "Go(r2) (fetch.lisp:4)"

@@ -71,6 +71,14 @@ base::Result<Sampler> Sampler::make(StartCuboid cuboid, double inset, base::Sour
   return sampler;
 }
 
+double Sampler::rim_share() const {
+  double drawn = 1.0;
+  for (const auto& [variable, interval] : cuboid_.dimensions) {
+    if (interval.lower != interval.upper) drawn *= 1.0 - 2.0 * inset_ / interval.width();
+  }
+  return 1.0 - drawn;
+}
+
 DrawnStart Sampler::draw_counting(const DrawKey& key, std::vector<std::int64_t>* refusals) const {
   const CounterRng rng(key);
   if (law_) {

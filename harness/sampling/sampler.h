@@ -75,6 +75,8 @@ class Sampler {
   const LawDraw* law() const { return law_.get(); }
   const StartCuboid& cuboid() const { return cuboid_; }
   double inset() const { return inset_; }
+  /// Share of the cuboid's volume in its rim, where the inset lets no start be drawn.
+  double rim_share() const;
 
  private:
   Sampler(StartCuboid cuboid, double inset);

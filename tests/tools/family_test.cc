@@ -39,7 +39,8 @@ class ThreeWays : public CliFixture {
 
 const std::string kSentence =
     "with 99 % confidence, for each of the 3 traces fewer than 5 % of start states drawn uniformly "
-    "from its start region give a discrepancy at any step (336 clean runs of 336); the solver "
+    "from its start region give a discrepancy at any step (336 clean runs of 336), supposing that "
+    "no run affects another; the solver "
     "finds "
     "no other trace";
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "compiler/base/json.h"
+#include "harness/confidence/rounding.h"
 
 namespace parallax::tools {
 namespace {
@@ -97,10 +98,10 @@ void add_differences(const Coverage& coverage, std::string& out) {
     for (std::size_t i = 0; i < std::min(never.size(), kMostListed); ++i) {
       const auto& [scenario, one, possible, executions, confidence, bound] = never[i];
       out += fmt::format(
-          "    {}:{}  {} {}: possible in {} of {} executions; with confidence {:g} % in fewer than "
-          "{:.3g} % of such\n",
-          one.file, one.line, one.event, one.outcome, possible, executions, 100.0 * confidence,
-          100.0 * bound);
+          "    {}:{}  {} {}: possible in {} of {} executions; with confidence {} in fewer than "
+          "{} of such\n",
+          one.file, one.line, one.event, one.outcome, possible, executions,
+          harness::level_text(confidence), harness::percent_up(bound));
     }
     more(never.size());
     out +=

@@ -7,14 +7,17 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/base/json.h"
+#include "harness/confidence/rounding.h"
 #include "harness/geometry_proof/proof_assumptions.h"
 
 namespace parallax::tools {
 namespace {
 
-std::string percent(double share, int width = 6) {
-  return fmt::format("{:{}.2f} %", 100.0 * share, width);
+/// No more is said to be proved than is: shares of what is settled are rounded down.
+std::string proved(double share, int width = 8) {
+  return fmt::format("{:>{}}", harness::percent_down(share), width);
 }
+std::string open_share(double share) { return fmt::format("{:>8}", harness::percent_up(share)); }
 
 /// How many boxes have the verdict, and what is met in most of them.
 std::string boxes_text(const harness::TestCertificate& test, harness::BoxVerdict verdict) {
@@ -101,11 +104,11 @@ std::string proof_text(const harness::Certificate& certificate, std::string_view
       text += fmt::format("      {} ({}): {}\n", test.test.function, test.test.source,
                           test.test.statement);
       using harness::BoxVerdict;
-      text += fmt::format("      safe     {}  {}\n", percent(test.safe),
+      text += fmt::format("      safe     {}  {}\n", proved(test.safe),
                           boxes_text(test, BoxVerdict::kSafe));
-      text += fmt::format("      refuted  {}  {}\n", percent(test.refuted),
+      text += fmt::format("      refuted  {}  {}\n", proved(test.refuted),
                           boxes_text(test, BoxVerdict::kRefuted));
-      text += fmt::format("      open     {}  {}\n", percent(test.open),
+      text += fmt::format("      open     {}  {}\n", open_share(test.open),
                           boxes_text(test, BoxVerdict::kOpen));
       for (const auto& what : test.assumed) text += "      given      " + what + "\n";
       if (index < simulated.size()) text += simulated_text(simulated[index]);
@@ -149,8 +152,8 @@ std::string check_text(const harness::Certificate& certificate,
   for (std::size_t i = 0; i < result.tests.size(); ++i) {
     const auto& test = result.tests[i];
     text += fmt::format("  {:>2}  {}, {}: confirmed of the start region safe {}, refuted {}\n",
-                        test.number, test.event, test.function, percent(test.safe, 0),
-                        percent(test.refuted, 0));
+                        test.number, test.event, test.function, proved(test.safe, 0),
+                        proved(test.refuted, 0));
     for (const auto& what : test.assumed) text += "      given      " + what + "\n";
     if (i < simulated.size()) text += simulated_text(simulated[i]);
   }

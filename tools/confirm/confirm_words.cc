@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "compiler/base/shown_text.h"
+#include "harness/confidence/rounding.h"
 #include "tools/confirm/confirm.h"
 
 namespace parallax::tools {
@@ -17,13 +18,10 @@ using harness::Persistence;
 using harness::StartVerdict;
 
 /// With so many digits that values `apart` from each other differ in the last but one.
-std::string rounded(double value, double apart) {
+std::string rounded(double value, double apart, harness::Round round = harness::Round::kNearest) {
   if (!(apart > 0.0)) return fmt::format("{}", value);
   const auto digits = std::ceil(-std::log10(apart)) + 1.0;
-  if (digits > 15.0) return fmt::format("{}", value);
-  auto out = fmt::format("{:.{}f}", value, static_cast<int>(std::max(0.0, digits)));
-  if (out.front() == '-' && out.find_first_not_of("-0.") == std::string::npos) out.erase(0, 1);
-  return out;
+  return harness::decimal_figure(value, static_cast<int>(std::clamp(digits, 0.0, 300.0)), round);
 }
 
 std::string with_unit(const std::string& number, const std::string& unit) {
@@ -43,9 +41,9 @@ std::string share_words(const Persistence& seen, std::int64_t asked) {
   if (seen.runs == 0) {
     return fmt::format("none of {} runs tells: each was lost, or went wrong otherwise", asked);
   }
-  const auto percent = 100.0 * static_cast<double>(seen.failures) / static_cast<double>(seen.runs);
-  auto out = fmt::format("it happens in {} of {} run{} ({:.0f} %)", seen.failures, seen.runs,
-                         seen.runs == 1 ? "" : "s", percent);
+  const auto share = static_cast<double>(seen.failures) / static_cast<double>(seen.runs);
+  auto out = fmt::format("it happens in {} of {} run{} ({})", seen.failures, seen.runs,
+                         seen.runs == 1 ? "" : "s", harness::percent_about(share));
   if (const auto others = asked - seen.runs; others > 0) {
     out += fmt::format("; {} more {} lost, or went wrong otherwise", others,
                        others == 1 ? "was" : "were");
@@ -149,8 +147,13 @@ bool is_partial(const Confirmation& confirmation) {
 
 std::string border_words(const StartParameter& parameter, const BorderBracket& border) {
   const auto apart = border.width();
-  auto out = fmt::format("at {} it happens, at {} {}", value_text(parameter, border.fails, apart),
-                         value_text(parameter, border.other, apart), beyond_words(border.beyond));
+  // Away from each other, so that the values shown hold the border between them as well.
+  const auto outwards = [&](double value, double other) {
+    const auto round = value < other ? harness::Round::kDown : harness::Round::kUp;
+    return with_unit(rounded(value, apart, round), parameter.unit);
+  };
+  auto out = fmt::format("at {} it happens, at {} {}", outwards(border.fails, border.other),
+                         outwards(border.other, border.fails), beyond_words(border.beyond));
   if (border.no_start) {
     out += fmt::format(
         "; between them, at {}, there is no valid start, so the border is known no "

@@ -4,7 +4,8 @@
 #include <map>
 #include <set>
 
-#include "harness/confidence/quantiles.h"
+#include "harness/confidence/clean_runs.h"
+#include "harness/confidence/rounding.h"
 #include "tools/page/markup.h"
 #include "tools/page/sections.h"
 #include "tools/page/write_page.h"
@@ -69,14 +70,16 @@ std::string events_of(const PageTrace& trace) {
   return trace.steps.size() > kMostEvents ? out + ", &hellip;" : out;
 }
 
-/// The share of simulations that were not clean, with the interval of Clopper and Pearson (1934).
+/// The share of simulations that were not clean, with an interval that holds whatever ended the
+/// run: most end at their first discrepancy, so their number is not fixed.
 std::string rate_of(std::int64_t bad, std::int64_t runs) {
   if (runs <= 0) return "no simulations";
   const auto k = static_cast<double>(bad), n = static_cast<double>(runs);
-  const double lower = bad == 0 ? 0.0 : harness::beta_quantile(0.025, k, n - k + 1.0);
-  const double upper = bad == runs ? 1.0 : harness::beta_quantile(0.975, k + 1.0, n - k);
-  return fmt::format("{} of {} ({}; {} to {})", bad, runs, percent(k / n), percent(lower),
-                     percent(upper));
+  constexpr double kOneSided = 0.975;
+  const double lower = 1.0 - harness::mixture_upper(runs - bad, runs, kOneSided);
+  const double upper = harness::mixture_upper(bad, runs, kOneSided);
+  return fmt::format("{} of {} ({}; {})", bad, runs, harness::percent_about(k / n),
+                     harness::percent_interval(lower, upper));
 }
 
 std::string column_heads(const std::vector<PageData>& pages) {
@@ -235,8 +238,9 @@ std::string causes(const std::vector<PageData>& pages) {
     }
     for (const auto& trace : pages[i].traces) {
       for (const auto& cause : trace.causes) {
-        cell(cause.cause, i) = fmt::format("{} ({}; {} to {})", cause.count, percent(cause.rate),
-                                           percent(cause.lower), percent(cause.upper));
+        cell(cause.cause, i) =
+            fmt::format("{} ({}; {})", cause.count, harness::percent_about(cause.rate),
+                        harness::percent_interval(cause.lower, cause.upper));
       }
     }
   }

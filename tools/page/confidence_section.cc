@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "harness/confidence/clean_runs.h"
+#include "harness/confidence/rounding.h"
 #include "tools/page/markup.h"
 #include "tools/page/plot.h"
 #include "tools/page/sections.h"
@@ -105,7 +106,7 @@ std::string plot(const PageData& page, const PageTrace& trace, const Curve& curv
   out += path(ideal, "curve ideal");
   out += line(x.from, at(page.epsilon), x.to, at(page.epsilon), "goal") +
          label(x.from + 4, at(page.epsilon) - 5, "goal-name",
-               fmt::format("to be excluded: {}", percent(page.epsilon)));
+               fmt::format("to be excluded: {}", harness::percent_up(page.epsilon)));
   out += path(curve.bounds, curve.failures > 0 ? "curve bad" : "curve clean");
   if (trace.paper_stopped_at) {
     const double at_x = x.at(static_cast<double>(*trace.paper_stopped_at));
@@ -121,7 +122,7 @@ std::string plot(const PageData& page, const PageTrace& trace, const Curve& curv
         fmt::format("<circle class=\"stop\" cx=\"{}\" cy=\"{}\" r=\"4.5\"/>", px(at_x), px(at_y)) +
         label(at_x + (right ? -8 : 8), at_y < y.to + 20 ? at_y + 18 : at_y - 9,
               right ? "end stop-name" : "stop-name",
-              fmt::format("stop after {}: {}", runs, percent(bound)));
+              fmt::format("stop after {}: {}", runs, harness::percent_up(bound)));
   }
   return out + "</svg>\n";
 }
@@ -148,7 +149,8 @@ std::string caption(const PageData& page, const PageTrace& trace, const Curve& c
   if (trace.certified_confidence > 0.0 && curve.unfinished == 0) {
     out += trace.certified_epsilon < 1.0
                ? fmt::format("Certified with {} confidence: fewer than {} of the runs. ",
-                             percent(trace.certified_confidence), percent(trace.certified_epsilon))
+                             harness::level_text(trace.certified_confidence),
+                             harness::percent_up(trace.certified_epsilon))
                : "Nothing is certified. ";
   }
   if (page.closed_loop) return out;
@@ -182,7 +184,8 @@ std::string confidence_section(const PageData& page) {
       "with "
       "{} confidence, and with {} from the first run on that is not clean. The thin curve is what "
       "clean runs alone would give.</p>\n<div class=\"panels\">\n{}</div>\n",
-      percent(page.confidence), percent(std::max(0.0, 1.0 - 2.0 * (1.0 - page.confidence))), out);
+      harness::level_text(page.confidence),
+      harness::level_text(std::max(0.0, 1.0 - 2.0 * (1.0 - page.confidence))), out);
   if (left_out > 0) text += fmt::format("<p>{} further traces are left out.</p>\n", left_out);
   return section_of("confidence", "Confidence", text);
 }

@@ -5,6 +5,7 @@
 
 #include "compiler/base/json.h"
 #include "harness/confidence/family.h"
+#include "harness/confidence/rounding.h"
 #include "tools/page/gather.h"
 #include "tools/page/markup.h"
 
@@ -106,7 +107,8 @@ std::string covered_text(const json& cover) {
   const auto bound = field<double>(cover, "bound", 1.0);
   if (shown < items && bound < 1.0) {
     out += fmt::format("; each of the others comes in fewer than {} of executions ({} confidence)",
-                       percent(bound), percent(field<double>(cover, "confidence")));
+                       harness::percent_up(bound),
+                       harness::level_text(field<double>(cover, "confidence")));
   }
   const auto end = text(cover, "end");
   return shown < items && !end.empty() ? out + "; ended by: " + end : out;

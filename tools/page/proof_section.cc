@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/confidence/rounding.h"
 #include "tools/page/markup.h"
 #include "tools/page/plot.h"
 #include "tools/page/sections.h"
@@ -13,18 +14,15 @@ namespace {
 constexpr double kMapSide = 300.0, kMapLeft = 56.0, kMapBottom = 40.0, kMapPad = 12.0;
 constexpr std::size_t kMostActions = 100, kMostAssumed = 100;
 
-/// "42.4 %", and never all or nothing of what is not.
-std::string share_text(double share) {
-  if (share > 0.0 && share < 0.0005) return "&lt; 0.1 %";
-  if (share < 1.0 && share > 0.9995) return "&gt; 99.9 %";
-  return fmt::format("{:.1f} %", 100.0 * share);
-}
+/// "42.4 %": no more is said to be proved than is.
+std::string proved_text(double share) { return harness::percent_down(share); }
+std::string open_text(double share) { return harness::percent_up(share); }
 
 std::string bar(const PageProofTest& test) {
   std::string out = fmt::format(
       "<svg class=\"shares\" viewBox=\"0 0 100 10\" preserveAspectRatio=\"none\" role=\"img\" "
       "aria-label=\"safe {}, refuted {}, open {}\">",
-      share_text(test.safe), share_text(test.refuted), share_text(test.open));
+      proved_text(test.safe), proved_text(test.refuted), open_text(test.open));
   double at = 0.0;
   for (const auto& [name, share] : {std::pair{"safe", test.safe},
                                     {"refuted", test.refuted},
@@ -46,8 +44,8 @@ std::string action_rows(const PageProofAction& action) {
         "data-label=\"Refuted\">{}</td><td "
         "class=\"num\" data-label=\"Open\">{}</td></tr>\n",
         html_short(action.event), html_short(test.asks), html_short(test.function),
-        html_short(test.source), bar(test), share_text(test.safe), share_text(test.refuted),
-        share_text(test.open));
+        html_short(test.source), bar(test), proved_text(test.safe), proved_text(test.refuted),
+        open_text(test.open));
   }
   if (!action.left_to_simulation.empty() || action.tests.empty()) {
     out += fmt::format(

@@ -10,6 +10,7 @@
 #include "harness/campaign/run_setup.h"
 #include "harness/cause/failure_rule.h"
 #include "harness/confidence/clean_runs.h"
+#include "harness/confidence/rounding.h"
 #include "harness/report/report.h"
 #include "tools/page/markup.h"
 #include "tools/page/plot.h"
@@ -238,10 +239,10 @@ std::string causes_table(const TraceRates& trace) {
   const auto row = [&](const CauseRate& rate, const std::string& name) {
     out += fmt::format(
         "<tr><th scope=\"row\">{}</th><td class=\"num\">{}</td><td class=\"num\">{}</td><td "
-        "class=\"num\">{} to {}</td><td class=\"num\">{}</td><td>{}</td></tr>\n",
-        name, count_text(rate, trace.runs), percent(rate.rate), percent(rate.lower),
-        percent(rate.upper), rate.example > 0 ? std::to_string(rate.example) : std::string(),
-        html_short(rate.reason));
+        "class=\"num\">{}</td><td class=\"num\">{}</td><td>{}</td></tr>\n",
+        name, count_text(rate, trace.runs), harness::percent_about(rate.rate),
+        harness::percent_interval(rate.lower, rate.upper),
+        rate.example > 0 ? std::to_string(rate.example) : std::string(), html_short(rate.reason));
   };
   row(trace.any, "any discrepancy");
   for (const auto& rate : trace.causes) row(rate, html_short(rate.cause));
@@ -257,8 +258,9 @@ std::string trace_part(const TraceRates& trace, const std::vector<const SampleRo
   body +=
       "</p>\n<figure><figcaption>How often each cause is the first to lead away from what is "
       "predicted, with ";
-  body += fmt::format("{} intervals ({})</figcaption>{}</figure>\n", percent(confidence),
-                      harness::interval_name(result), causes_plot(trace));
+  body +=
+      fmt::format("{} intervals ({})</figcaption>{}</figure>\n", harness::level_text(confidence),
+                  harness::interval_name(result), causes_plot(trace));
   if (trace.causes.size() > kMostCauses) {
     body += fmt::format("<p>{} rarer causes are in the table alone.</p>\n",
                         trace.causes.size() - kMostCauses);

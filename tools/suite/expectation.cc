@@ -9,6 +9,7 @@
 
 #include "compiler/base/json.h"
 #include "harness/confidence/rate_evidence.h"
+#include "harness/confidence/rounding.h"
 
 namespace parallax::tools {
 namespace {
@@ -91,7 +92,7 @@ std::string missing_evidence(const harness::RateExpectation& expect, const std::
                              const harness::RateCounts& counts) {
   const harness::RateClaim claim{expect.lower, expect.upper, *expect.confidence};
   const auto bounds = to_string(claim);
-  const auto level = fmt::format("{:g} % confidence", 100 * *expect.confidence);
+  const auto level = harness::level_text(*expect.confidence) + " confidence";
   switch (weigh(claim, counts)) {
     case harness::Evidence::kSupports:
       return {};
@@ -166,9 +167,11 @@ std::vector<std::string> unmet(const harness::RateExpectation& expect,
       trace.value("runs", std::int64_t{0}) + trace.value("lost", std::int64_t{0}),
       any.value("count", std::int64_t{0}), trace.value("lost", std::int64_t{0}), expect.fixed_runs};
   const auto found =
-      fmt::format("discrepancies in {} of {} runs of trace {}, {:.1f} % [{:.1f}, {:.1f}]{}",
-                  counts.failures, counts.runs - counts.lost, expect.trace, 100 * rate, 100 * lower,
-                  100 * upper, counts.lost == 0 ? "" : fmt::format(", {} more lost", counts.lost));
+      fmt::format("discrepancies in {} of {} runs of trace {}, {} [{}, {}]{}", counts.failures,
+                  counts.runs - counts.lost, expect.trace, harness::percent_about(rate),
+                  harness::percent_figure(lower, harness::Round::kDown),
+                  harness::percent_figure(upper, harness::Round::kUp),
+                  counts.lost == 0 ? "" : fmt::format(", {} more lost", counts.lost));
   std::vector<std::string> out;
   if (expect.confidence) {
     if (auto missing = missing_evidence(expect, found, counts); !missing.empty()) {

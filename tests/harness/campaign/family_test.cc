@@ -34,8 +34,8 @@ TEST_CASE("a number of traces that was found beforehand shares the error equally
   }
   CHECK(result->claim ==
         "with 99 % confidence, for each of the 3 traces fewer than 5 % of start states drawn "
-        "uniformly from its start region give a discrepancy at any step (336 clean runs of 336); "
-        "the solver finds no other trace");
+        "uniformly from its start region give a discrepancy at any step (336 clean runs of 336), "
+        "supposing that no run affects another; the solver finds no other trace");
   CHECK(says(campaign_summary(*result, {}), "112 clean runs of each of 3 traces exclude"));
 }
 
@@ -115,6 +115,31 @@ TEST_CASE("a discrepancy that ends the run costs no look ahead, and leaves no se
   CHECK(result->simulations == 1);
   CHECK_FALSE(result->spending.has_value());
   CHECK(result->claim.empty());
+}
+
+TEST_CASE("what ends a run early takes nothing from what is known of its traces") {
+  SUBCASE("a discrepancy in the last one") {
+    Bench bench;
+    bench.traces = 3;
+    const auto first = drawn_start(bench, 3, 4);
+    bench.script.drops = [&](const State& s) { return s == first; };
+    const auto result = bench.run();
+    REQUIRE(result.has_value());
+    CHECK(result->verdict == CampaignVerdict::kDiscrepancy);
+    CHECK(says(result->claim, "; the solver finds no other trace"));
+    CHECK(result->exploration == "all traces explored");
+  }
+  SUBCASE("a discrepancy before the last one, which was found and is not simulated") {
+    Bench bench;
+    bench.traces = 3;
+    const auto first = drawn_start(bench, 2, 4);
+    bench.script.drops = [&](const State& s) { return s == first; };
+    const auto result = bench.run();
+    REQUIRE(result.has_value());
+    CHECK(
+        says(result->claim, "; 1 of 3 traces was not simulated; the solver finds no other trace"));
+    CHECK(result->exploration == "stopped");
+  }
 }
 
 TEST_CASE("of traces with a discrepancy the sentence says that they are left out") {

@@ -2,6 +2,7 @@
 
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/paper_rule.h"
+#include "harness/confidence/rounding.h"
 #include "harness/sampling/sampler.h"
 
 namespace parallax::harness {
@@ -22,14 +23,16 @@ TEST_CASE("claim: the sentence of a finished clean-runs trace") {
   CHECK(
       claim(tally_of(90), {}, Comparison::kEveryStep) ==
       "with 99 % confidence, fewer than 5 % of start states drawn uniformly from the start region "
-      "give a discrepancy at any step (90 clean runs of 90)");
+      "give a discrepancy at any step (90 clean runs of 90), supposing that no run affects "
+      "another");
 }
 
 TEST_CASE("claim: before the end, and with the paper's rule, it is the bound of the runs made") {
   CriterionSpec spec;
   CHECK(claim(tally_of(7), spec, Comparison::kEveryStep) ==
         "with 99 % confidence, fewer than 48.3 % of start states drawn uniformly from the start "
-        "region give a discrepancy at any step (7 clean runs of 7)");
+        "region give a discrepancy at any step (7 clean runs of 7), supposing that no run affects "
+        "another");
   spec.kind = CriterionKind::kPaper;
   CHECK(claim(tally_of(90), spec, Comparison::kEveryStep).find("fewer than 4.99 % of") !=
         std::string::npos);
@@ -44,7 +47,8 @@ TEST_CASE("claim: rejected starts narrow it to valid ones, lost runs widen it an
   CHECK(
       sentence ==
       "with 98 % confidence, fewer than 5 % of start states drawn uniformly from the start region "
-      "give a discrepancy at any step (175 clean runs of 176, 1 lost run counted as a failure)");
+      "give a discrepancy at any step (175 clean runs of 176, 1 lost run counted as a failure), "
+      "supposing that no run affects another");
 }
 
 TEST_CASE("claim: nothing is claimed without clean runs or after a discrepancy") {
@@ -54,6 +58,16 @@ TEST_CASE("claim: nothing is claimed without clean runs or after a discrepancy")
   auto tally = tally_of(3);
   tally.add_mismatch();
   CHECK(claim(tally, {}, Comparison::kEveryStep) == "1 of 4 runs gave a discrepancy");
+}
+
+TEST_CASE("claim: what is never drawn is left out of the region that it is about") {
+  const DrawnStarts uniform{{}, "its rim (`inset_m`: 0.05)"};
+  CHECK(claim(tally_of(90), {}, Comparison::kEveryStep, uniform)
+            .find("drawn uniformly from the start region without its rim (`inset_m`: 0.05) give") !=
+        std::string::npos);
+  const DrawnStarts by_law{"x normal", "its rim (`inset_m`: 0.05)"};
+  CHECK(drawn_from("its region", by_law) ==
+        "drawn from its region without its rim (`inset_m`: 0.05) by the scenario's law (x normal)");
 }
 
 TEST_CASE("claim: it is about what was compared") {
@@ -66,7 +80,7 @@ TEST_CASE("claim: figures are rounded away from more than was shown") {
   CHECK(percent_up(0.049881) == "4.99 %");
   CHECK(percent_up(0.482053) == "48.3 %");
   CHECK(percent_up(0.0010001) == "0.101 %");
-  CHECK(percent_up(0.9999) == "100 %");
+  CHECK(percent_up(0.9999) == "99.99 %");
   CHECK(percent_up(0.1) == "10 %");
   CHECK(percent_up(0.0) == "0 %");
 }
@@ -79,7 +93,7 @@ TEST_CASE("caveats: rejected starts with their rate, lost runs, what the paper's
   const auto found = caveats_of(tally_of(95, 2, 3));
   REQUIRE(found.size() == 3);
   CHECK(found[0] ==
-        "the claim is about start states that are valid: 3 of 100 drawn were rejected (3.0 %)");
+        "the claim is about start states that are valid: 3 of 100 drawn were rejected (3 %)");
   CHECK(found[1] ==
         "2 runs were lost (crash, hang or invalid numbers), counted as discrepancies; the stated "
         "confidence is 98 % instead of 99 %, as the runs may end with either of two bounds");

@@ -59,5 +59,16 @@ TEST_CASE("what `sampling` narrows counts, too") {
   CHECK(shares[0].share == doctest::Approx(0.06 / 0.24));
 }
 
+TEST_CASE("ends that are not drawn are no part of the share") {
+  const StateMapping mapping(cells(), {{"At", 2, InsideBinding{"{0}", 1, {}, {}}, {}}});
+  base::DiagnosticSink sink;
+  const auto cuboid =
+      mapping.start_cuboid({ground_fluent("At(cup,pw2)")}, {"At(cup,pw2)"}, {}, {}, sink);
+  REQUIRE(cuboid.has_value());
+  const auto shares = start_shares(mapping, {"At(cup,pw2)"}, *cuboid, 0.01);
+  REQUIRE(shares.size() == 1);
+  CHECK(shares[0].share == doctest::Approx(0.22 / 0.24 * 0.13 / 0.15 * 0.02 / 0.04));
+}
+
 }  // namespace
 }  // namespace parallax::harness

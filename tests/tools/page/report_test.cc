@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "harness/confidence/rounding.h"
 #include "tests/tools/cli_json.h"
 #include "tests/tools/page/html_check.h"
 #include "tests/tools/page/proof_file.h"
@@ -266,7 +267,7 @@ TEST_CASE("a certificate that lies in the folder is shown with its shares, or sa
   const auto [shown, said] = page_with(proof);
   CHECK(said.empty());
   CHECK(shown.ids.contains("proof"));
-  for (const auto* part : {"25.0 %", "50.0 %", "is the way free?", "contacts decide",
+  for (const auto* part : {"25 %", "50 %", "is the way free?", "contacts decide",
                            "box stays within 0.002 m", "--check edge/one.proof.json", "box.x"}) {
     CAPTURE(part);
     CHECK(shown.text.find(part) != std::string::npos);
@@ -358,7 +359,7 @@ TEST_CASE("the curve of confidence ends at what the report certifies") {
     CHECK(cli.parallax({"report", folder, "-o", folder + ".html"}).code == 0);
     const auto trace = Json::parse(cli.read(folder + "/report.json"))["traces"][0];
     const auto page = page_of(cli, folder + ".html");
-    const auto bound = tools::percent(trace["certified"]["epsilon"]);
+    const auto bound = harness::percent_up(trace["certified"]["epsilon"]);
     CHECK(page.text.find("stop after " + trace["simulations"].dump() + ": " + bound) !=
           std::string::npos);
     CHECK(page.text.find("Certified with 98 % confidence") != std::string::npos);
@@ -372,7 +373,7 @@ TEST_CASE("several folders are held against each other") {
         0);
   const auto page = page_of(cli, "c.html");
   CHECK(page.text.find("2 runs, different verdicts") != std::string::npos);
-  CHECK(page.text.find("1 of 2 (50 %; 1.26 % to 98.7 %)") != std::string::npos);
+  CHECK(page.text.find("1 of 2 (50 %; 0.42 to 99.58 %)") != std::string::npos);
   CHECK(page.text.find("Traces that were simulated:") != std::string::npos);
 }
 
