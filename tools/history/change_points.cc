@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <tuple>
 
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/rate_evidence.h"
+#include "harness/confidence/rounding.h"
+#include "harness/confidence/spending.h"
 
 namespace parallax::tools {
 namespace {
@@ -33,8 +36,8 @@ std::string reason_words(const HistoryLine& old_line, const HistoryCase& before,
 }
 
 std::string rate_words(const MeasuredRate& rate) {
-  return fmt::format("{} of {} ({:.1f} to {:.1f} %)", rate.count, rate.runs, 100.0 * rate.lower,
-                     100.0 * rate.upper);
+  return fmt::format("{} of {} ({})", rate.count, rate.runs,
+                     harness::percent_interval(rate.lower, rate.upper));
 }
 
 harness::RateCounts counts_of(const MeasuredRate& rate) {
@@ -95,15 +98,13 @@ class CaseHistory {
     }
   }
 
-  /// Everything that was measured of the case.
-  std::vector<std::string> rate_names() const {
-    std::vector<std::string> out;
+  /// Everything that was measured of the case, with the first line that has it.
+  std::map<std::string, std::size_t> rate_names() const {
+    std::map<std::string, std::size_t> out;
     for (std::size_t i = 0; i < suite_.size(); ++i) {
       if (at(i) == nullptr) continue;
-      for (const auto& rate : at(i)->rates) out.push_back(rate.of);
+      for (const auto& rate : at(i)->rates) out.emplace(rate.of, i);
     }
-    std::sort(out.begin(), out.end());
-    out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
   }
 
@@ -117,7 +118,19 @@ class CaseHistory {
     return out;
   }
 
-  void rates(const std::string& of, std::size_t comparisons, double confidence,
+  /// Adds to each line the comparisons that it makes: of rates known by then that are measured in
+  /// it and before it. What later lines bring has no part in it, so what was named stays named.
+  void count_comparisons(std::vector<std::size_t>& by_line) const {
+    for (const auto& [of, known_at] : rate_names()) {
+      const auto lines = measured(of);
+      for (std::size_t k = 1; k < lines.size(); ++k) {
+        if (lines[k] >= known_at) ++by_line[lines[k]];
+      }
+    }
+  }
+
+  /// `factors`: by line, what its p-values are multiplied by.
+  void rates(const std::string& of, std::span<const double> factors, double confidence,
              std::vector<ChangePoint>& out) const {
     std::optional<std::size_t> reference;
     for (const auto i : measured(of)) {
@@ -126,8 +139,8 @@ class CaseHistory {
         continue;
       }
       const auto before = *rate_or_none(*at(*reference), of), now = *rate_or_none(*at(i), of);
-      const double p = std::min(1.0, static_cast<double>(comparisons) * two_sided(before, now));
-      if (p >= 1.0 - confidence) continue;
+      const double p = std::min(1.0, factors[i] * two_sided(before, now));
+      if (p > 1.0 - confidence) continue;
       out.push_back({ChangePoint::Kind::kRate, i, name_,
                      fmt::format("{}: {}, then {}{}", of, rate_words(before), rate_words(now),
                                  reason_words(line(*reference), *at(*reference), line(i), *at(i))),
@@ -165,17 +178,24 @@ Changes find_changes(const History& history, const std::vector<std::size_t>& sui
   Changes out;
   out.confidence = confidence;
   const auto names = case_names(history, suite);
+  std::vector<std::size_t> comparisons(suite.size(), 0);
   for (const auto& name : names) {
-    const CaseHistory one(history, suite, name);
-    for (const auto& of : one.rate_names()) {
-      const auto times = one.measured(of).size();
-      out.comparisons += times > 0 ? times - 1 : 0;
-    }
+    CaseHistory(history, suite, name).count_comparisons(comparisons);
+  }
+  // The first line compares nothing, so the k-th look is at line k.
+  const harness::SpendingRule spending(std::nullopt);
+  std::vector<double> factors(suite.size(), 1.0);
+  for (std::size_t i = 1; i < suite.size(); ++i) {
+    out.comparisons += comparisons[i];
+    const auto tests = static_cast<double>(std::max<std::size_t>(1, comparisons[i]));
+    factors[i] = tests / spending.share(static_cast<std::int64_t>(i));
   }
   for (const auto& name : names) {
     const CaseHistory one(history, suite, name);
     one.outcomes(out.points);
-    for (const auto& of : one.rate_names()) one.rates(of, out.comparisons, confidence, out.points);
+    for (const auto& [of, known_at] : one.rate_names()) {
+      one.rates(of, factors, confidence, out.points);
+    }
   }
   std::stable_sort(out.points.begin(), out.points.end(), [](const auto& a, const auto& b) {
     return std::tie(a.line, a.name) < std::tie(b.line, b.name);
@@ -206,7 +226,8 @@ std::string change_text(const ChangePoint& point, const History& history,
   const auto& revision = history.lines[index].revision;
   const auto where = revision.empty() ? fmt::format("line {}", history.numbers[index]) : revision;
   auto out = fmt::format("{}: {}: {}", where, point.name, point.words);
-  if (point.kind == ChangePoint::Kind::kRate) out += fmt::format("; p = {:.2g}", point.p_value);
+  if (point.kind == ChangePoint::Kind::kRate)
+    out += fmt::format("; adjusted {}", harness::p_text(point.p_value));
   return out;
 }
 

@@ -20,7 +20,7 @@ struct ChangePoint {
   std::size_t line = 0;  // index into the suite's lines: the first with what is new
   std::string name;      // of the case
   std::string words;     // "passed (no-discrepancy), then failed (discrepancy)"
-  double p_value = 0.0;  // kRate: corrected for the number of comparisons
+  double p_value = 0.0;  // kRate: adjusted for all comparisons and looks
 };
 
 /// With which changes of rates are named.
@@ -28,15 +28,16 @@ inline constexpr double kHistoryConfidence = 0.95;
 
 struct Changes {
   std::vector<ChangePoint> points;  // by line, then by name
-  std::size_t comparisons = 0;      // of rates; what was corrected for
+  std::size_t comparisons = 0;      // of rates, over all lines
   double confidence = kHistoryConfidence;
 };
 
 /// The changes in the lines of one suite, `suite` being indices into the history. Rates are held
-/// against the first measurement since their last change by Fisher's exact test of two sides; the
-/// probability that any of them is named although none has changed is at most 1 - confidence
-/// (Bonferroni over all comparisons of the suite). Lost runs count for whichever answer is less
-/// remarkable.
+/// against the first measurement since their last change by Fisher's exact test of two sides. Each
+/// line is a look, and look k spends 6/(pi^2 k^2) of the error (SpendingRule), shared equally by
+/// the rates that were known by then. So the probability that any change is ever named although
+/// none happened is at most 1 - confidence, however long the history grows, and a change that was
+/// named stays named. Lost runs count for whichever answer is less remarkable.
 Changes find_changes(const History& history, const std::vector<std::size_t>& suite,
                      double confidence);
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "harness/confidence/rounding.h"
 #include "tools/history/change_points.h"
 #include "tools/page/markup.h"
 #include "tools/page/plot.h"
@@ -69,7 +70,7 @@ class SuitePart {
       rows += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}{}</td></tr>\n",
                           html_short(line_name(history_, suite_[point.line])),
                           html_short(point.name), html_short(point.words),
-                          rate ? fmt::format(", p = {:.2g}", point.p_value) : "");
+                          rate ? ", adjusted " + harness::p_text(point.p_value) : std::string());
     }
     if (rows.empty()) rows = "<tr><td colspan=\"3\">nothing</td></tr>\n";
     auto out =
@@ -83,9 +84,10 @@ class SuitePart {
     if (changes_.comparisons == 0) return out;
     return out + fmt::format(
                      "<p class=\"hint\">Rates are held against the first measurement since their "
-                     "last change by Fisher&#39;s exact test; that any of these is named by chance "
-                     "has a probability of at most {} (Bonferroni over {} comparisons).</p>\n",
-                     percent(1.0 - changes_.confidence), changes_.comparisons);
+                     "last change by Fisher&#39;s exact test; that any change is ever named by "
+                     "chance has a probability of at most {}, shared by all looks and all rates "
+                     "({} comparisons so far).</p>\n",
+                     harness::percent_up(1.0 - changes_.confidence), changes_.comparisons);
   }
 
   std::vector<std::string> names() const {
