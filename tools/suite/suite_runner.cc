@@ -173,13 +173,33 @@ CaseResult try_case(const SuiteCase& one, const RunnerOptions& options,
   return result;
 }
 
+/// Whether one attempt decides. What is expected of a rate, and the verdict `no-discrepancy`, are
+/// statistical tests with a stated error: tried until it passes, a test errs more often. That an
+/// attempt gave no answer may depend on what it would have been, so that ends it as well.
+bool one_attempt_decides(const SuiteCase& one) {
+  const auto* expect = std::get_if<harness::Expectation>(&one.check);
+  return expect != nullptr && (expect->rate.has_value() ||
+                               expect->verdict == std::optional<std::string>("no-discrepancy"));
+}
+
+bool is_open(const CaseResult& result) {
+  return result.outcome == Outcome::kFailed || result.outcome == Outcome::kError;
+}
+
 }  // namespace
 
 CaseResult run_case(const SuiteCase& one, const RunnerOptions& options,
                     const std::atomic<bool>& stop) {
   auto result = try_case(one, options, stop);
+  if (one_attempt_decides(one)) {
+    if (options.retries > 0 && is_open(result)) {
+      result.problems.emplace_back(
+          "not repeated (--retry): it is a statistical test, of which one attempt decides");
+    }
+    return result;
+  }
   for (std::int64_t i = 0; i < options.retries; ++i) {
-    if (result.outcome != Outcome::kFailed && result.outcome != Outcome::kError) break;
+    if (!is_open(result)) break;
     auto again = try_case(one, options, stop);
     again.attempts = result.attempts + 1;
     again.wall_s += result.wall_s;
