@@ -71,6 +71,7 @@ void Conformance::add_claims() {
                        : "yes, and wrongly: a run that is made again is another one";
   claims.independence =
       !known                                     ? "unknown"
+      : wears_                                   ? "no: a run depends on those before it"
       : measured == Repeatability::kNone         ? "only if its own randomness is independent "
                                                    "from run to run, which no seed controls"
       : noise_seen_ && info.seeds && seeds_fine_ ? "yes: starts and seeds are drawn independently"
@@ -103,6 +104,7 @@ ConformanceReport Conformance::run() {
     }
     check_determinism();
     check_seeds();
+    check_wear();
     check_invalid_starts();
     check_unknown();
     check_time_limit();

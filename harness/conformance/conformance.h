@@ -18,6 +18,7 @@ enum class CheckKind : std::uint8_t {
   kActions,
   kDeterminism,
   kSeeds,
+  kWear,
   kInvalidStart,
   kUnknown,
   kTimeLimit,

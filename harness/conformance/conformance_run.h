@@ -65,6 +65,7 @@ class Conformance {
   void check_actions();
   void check_determinism();
   void check_seeds();
+  void check_wear();
   void check_invalid_starts();
   void check_refused(const char* what, const State& start, bool may_be_invalid);
   void check_unknown();
@@ -85,7 +86,7 @@ class Conformance {
   std::optional<RunRecord> first_;  // of the first start and seed
   std::vector<State> seen_;
   std::set<std::string> said_;
-  bool noise_seen_ = false, seeds_fine_ = true;
+  bool noise_seen_ = false, seeds_fine_ = true, wears_ = false;
   std::optional<bool> jobs_work_;  // none: not tried
   double hello_wall_s_ = 0.0;
   double acted_wall_s_ = 0.0, acted_sim_s_ = 0.0;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 
 #include "harness/conformance/conformance_run.h"
@@ -12,6 +13,9 @@ namespace parallax::harness {
 namespace {
 
 constexpr int kRoundTrips = 20;
+// More resets than a campaign of one trace makes by default; fewer where they take long.
+constexpr int kWearResets = 120;
+constexpr std::chrono::seconds kWearTime{20};
 
 /// Boolean, number or text: what must not change between observations.
 int kind_of(const Value& value) {
@@ -158,6 +162,43 @@ void Conformance::check_seeds() {
                         noise_seen_ ? "four seeds give different results: " + difference.where
                                     : "four seeds give the same result",
                         report_.info.seeds ? "seeds are used" : "no seed is used"));
+}
+
+/// Is a start after many others still what it was, and what it is in a process that made none?
+void Conformance::check_wear() {
+  now_ = CheckKind::kWear;
+  if (!first_) return skip(now_, "no run came to its end");
+  if (report_.repeatability == Repeatability::kNone) {
+    return skip(now_, "the same start and seed give other results anyway");
+  }
+  const auto until = std::chrono::steady_clock::now() + kWearTime;
+  int resets = 0;
+  for (; resets < kWearResets && std::chrono::steady_clock::now() < until; ++resets) {
+    const auto begun = reset(starts_[static_cast<std::size_t>(resets) % starts_.size()],
+                             kTriedSeeds[static_cast<std::size_t>(resets) % 3]);
+    if (!begun) return skip(now_, fmt::format("it was lost in reset {}", resets + 1));
+  }
+  const auto compare = [&](const std::string& place) {
+    const auto again = record(starts_.front(), kTriedSeeds[0]);
+    if (!again) return fmt::format("did not come to its end {}", place);
+    const auto difference = difference_of(*first_, *again, actions_, time_slack_s());
+    const bool is_same = difference.kind == RunDifference::Kind::kNone ||
+                         (difference.kind == RunDifference::Kind::kNumbers &&
+                          report_.repeatability == Repeatability::kTolerance &&
+                          difference.largest <= options_.tolerance);
+    return is_same ? std::string()
+                   : fmt::format("gives another result {}: {}", place, difference.where);
+  };
+  auto worn = compare(fmt::format("after {} resets", resets));
+  probe_.reset();
+  auto fresh = compare("in a process that was started for it");
+  for (const auto& what : {worn, fresh}) {
+    if (what.empty()) continue;
+    wears_ = true;
+    fault("the first run, made again, " + what);
+  }
+  say(now_, fmt::format("{} after {} resets, and in a new process",
+                        wears_ ? "not the same" : "the same", resets));
 }
 
 void Conformance::check_time_limit() {
