@@ -72,9 +72,6 @@ struct Command {
   std::function<int(Invocation&)> run;
 };
 
-/// Seeds stay below 2^53, so that every JSON reader keeps them.
-inline constexpr std::int64_t kMaxSeed = (std::int64_t{1} << 53U) - 1;
-
 /// Adds the options that every command has.
 void add_common_options(OptionTable& table, CommonOptions& options);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <random>
 #include <sstream>
 
 #include "compiler/base/whole_number.h"
@@ -46,6 +47,24 @@ CLI::Validator number_from_0(bool and_0) {
   return CLI::Validator(check, and_0 ? "NONNEGATIVE" : "POSITIVE");
 }
 
+/// `new` becomes a number that the operating system draws, as if it had been typed.
+CLI::Validator seed_number() {
+  const auto check = [](std::string& text) -> std::string {
+    if (text == "new") {
+      std::random_device machine;
+      const auto bits = (std::uint64_t{machine()} << 32U) | machine();
+      text = std::to_string(bits & static_cast<std::uint64_t>(kMaxSeed));
+      return {};
+    }
+    const auto value = base::whole_number<std::int64_t>(text);
+    const bool fine = value && *value >= 0 && *value <= kMaxSeed;
+    return fine
+               ? std::string()
+               : fmt::format("{} is neither `new` nor a whole number from 0 to {}", text, kMaxSeed);
+  };
+  return CLI::Validator(check, "N");
+}
+
 struct AddCheck {
   CLI::Option& option;
 
@@ -53,6 +72,10 @@ struct AddCheck {
   void operator()(const OneOf& one) const { option.check(CLI::IsMember(one.values)); }
   void operator()(const WholeNumber& range) const {
     option.check(whole_number(range.lower, range.upper));
+  }
+  void operator()(SeedNumber) const {
+    option.transform(seed_number());
+    option.type_name("N");
   }
   void operator()(const FiniteNumber& range) const {
     option.check(finite_range(range.lower, range.upper));

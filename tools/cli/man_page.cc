@@ -29,6 +29,7 @@ struct RangeText {
   std::string operator()(const OneOf& one) const {
     return fmt::format("One of: {}.", fmt::join(one.values, ", "));
   }
+  std::string operator()(SeedNumber) const { return "A whole number from 0 on, or `new`."; }
   std::string operator()(const WholeNumber& range) const { return whole(range.lower, range.upper); }
   std::string operator()(const IntRange& range) const { return whole(range.lower, range.upper); }
   std::string operator()(const FiniteNumber& range) const {

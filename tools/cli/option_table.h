@@ -17,6 +17,10 @@ struct OneOf {
 struct WholeNumber {  // every character of it
   std::int64_t lower, upper;
 };
+/// Seeds stay below 2^53, so that every JSON reader keeps them.
+inline constexpr std::int64_t kMaxSeed = (std::int64_t{1} << 53U) - 1;
+/// A whole number from 0 to kMaxSeed, or `new`: a fresh one from the operating system.
+struct SeedNumber {};
 struct FiniteNumber {  // refuses what is no number, which compares with nothing
   double lower, upper;
 };
@@ -25,8 +29,8 @@ struct IntRange {
 };
 struct NonNegative {};
 struct Positive {};
-using ValueCheck =
-    std::variant<std::monostate, OneOf, WholeNumber, FiniteNumber, IntRange, NonNegative, Positive>;
+using ValueCheck = std::variant<std::monostate, OneOf, WholeNumber, SeedNumber, FiniteNumber,
+                                IntRange, NonNegative, Positive>;
 
 /// Where a value goes. A flag sets a bool, counts in an int, or takes a text after `=`.
 using OptionTarget = std::variant<bool*, int*, std::int64_t*, std::uint64_t*, double*, std::string*,

@@ -233,8 +233,10 @@ Command rates_command() {
   command.option("--confidence", options->rates.confidence, "Confidence of each interval")
       .check(FiniteNumber{0.5, 0.999999})
       .show_default();
-  command.option("--seed", options->rates.seed, "Seed of every random choice")
-      .check(WholeNumber{0, kMaxSeed})
+  command
+      .option("--seed", options->rates.seed,
+              "Seed of every random choice; `new`: a fresh one, which is printed")
+      .check(SeedNumber{})
       .show_default();
   command.option("-j,--jobs", options->rates.jobs, "Simulations at the same time")
       .check(WholeNumber{1, 256})

@@ -11,6 +11,7 @@
 #include "harness/campaign/campaign.h"
 #include "harness/report/report.h"
 #include "tools/app/closed_loop.h"
+#include "tools/app/earlier_runs.h"
 #include "tools/app/run_coverage.h"
 #include "tools/app/scenario_check.h"
 #include "tools/app/scenario_model.h"
@@ -218,6 +219,20 @@ Ran run_closed(const RunOptions& options, const ScenarioModel& loaded,
   return {std::move(result), (*loop)->solve_calls()};
 }
 
+/// Where nothing was found now with starts for which something was changed.
+void warn_of_reused_starts(const harness::CampaignOptions& campaign,
+                           const harness::CampaignResult& result, const harness::Scenario& scenario,
+                           base::DiagnosticSink& sink) {
+  if (result.verdict != harness::CampaignVerdict::kNoDiscrepancy) return;
+  const auto earlier = earlier_discrepancies(campaign.run_dir, scenario.name, campaign.seed);
+  if (earlier.empty()) return;
+  const auto more = earlier.size() - 1;
+  const auto name = more == 0 ? earlier.front()
+                              : fmt::format("{} (and {} other {})", earlier.front(), more,
+                                            more == 1 ? "run" : "runs");
+  sink.warning(codes::kStartsReused, base::SourceRange{scenario.source, 0, 0}, name);
+}
+
 int run_scenario(const RunOptions& given, Invocation& invocation) {
   auto& sink = invocation.sink();
   using harness::Execution;
@@ -265,6 +280,7 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   if (!report_fleet(*workers, invocation) || !result) return 0;
   if (!samples.write(invocation)) return 0;
   result->coverage = coverage_of_run(*loaded, *result, invocation);
+  warn_of_reused_starts(campaign, *result, loaded->scenario, sink);
   if (result->journal_open && !harness::write_report(*result, campaign.run_dir, sink)) return 0;
   if (invocation.options().json) {
     invocation.document(harness::campaign_json(*result, true));
@@ -309,8 +325,10 @@ Command run_command() {
   command.option("scenario", options->scenario, "Scenario file (YAML)").required().file({"yaml"});
   command.heading("The run");
   command.option("--out", options->out, "Run folder; default out/NAME, numbered if taken").folder();
-  command.option("--seed", options->seed, "Seed of every random choice")
-      .check(WholeNumber{0, kMaxSeed})
+  command
+      .option("--seed", options->seed,
+              "Seed of every random choice; `new`: a fresh one, which is printed")
+      .check(SeedNumber{})
       .show_default();
   command.option("-j,--jobs", options->jobs, "Simulations at the same time")
       .check(WholeNumber{1, 256})
