@@ -1,8 +1,8 @@
 // A simulator that shows a discrepancy with a known probability: coin_simulator P KIND LOG. With
 // the kind `seeded` the seed decides, and it says so; with `unseeded` the machine does, and runs
 // that go wrong take longer. An action takes COIN_SECONDS besides. Each reset is written to LOG
-// with the number of its process. What it says of its version is in COIN_VERSION. Shares no code
-// with the harness.
+// with the number of its process. What it says of its version is in COIN_VERSION. After COIN_WEAR
+// resets of a process all of its runs go wrong. Shares no code with the harness.
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -43,6 +43,8 @@ int main(int argc, char** argv) {
   const bool seeded = std::string(argv[2]) == "seeded";
   const char* version = std::getenv("COIN_VERSION");
   const char* seconds = std::getenv("COIN_SECONDS");
+  const char* wear = std::getenv("COIN_WEAR");
+  int resets = 0;
   std::random_device machine;
   Json state;
   bool goes_wrong = false;
@@ -64,7 +66,7 @@ int main(int argc, char** argv) {
       state = request.at("params").at("state");
       const auto seed = seeded ? request.at("params").at("seed").get<std::uint64_t>()
                                : (std::uint64_t{machine()} << 32U) + machine();
-      goes_wrong = drawn_from(seed) < p;
+      goes_wrong = drawn_from(seed) < p || (wear != nullptr && ++resets > std::atoi(wear));
       result = {{"status", "ok"}};
     } else if (method == "act") {
       if (goes_wrong && !seeded) ::usleep(kSlow);

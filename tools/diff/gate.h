@@ -6,6 +6,7 @@
 
 #include "harness/config/gate_rules.h"
 #include "tools/diff/model_difference.h"
+#include "tools/diff/rates_revision.h"
 #include "tools/diff/revision.h"
 
 namespace parallax::tools {
@@ -62,6 +63,10 @@ base::Result<std::vector<RuleResult>> gate_runs(const GateInput& input,
 base::Result<std::vector<RuleResult>> gate_rates(const GateInput& input,
                                                  const harness::GateRules::Rates& rules,
                                                  Context& context);
+/// The rules about rates, of results that were read. The probability that any of them is broken
+/// although nothing changed is at most 1 - confidence: rules, traces and causes share that error.
+std::vector<RuleResult> hold_rates(const RatesRevision& before, const RatesRevision& after,
+                                   const harness::GateRules::Rates& rules);
 
 std::string gate_text(const GateReport& report);
 /// {"passed": false, "rules": [{"rule", "outcome", "words", "witness"}], "remarks": [...]}

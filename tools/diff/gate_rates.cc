@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "harness/confidence/rate_evidence.h"
+#include "harness/confidence/rounding.h"
 #include "tools/diff/gate.h"
 #include "tools/diff/rates_revision.h"
 
@@ -59,8 +61,6 @@ std::string not_comparable(const RatesRevision& before, const RatesRevision& aft
   return {};
 }
 
-std::string percent(double share) { return fmt::format("{:.2g} %", 100.0 * share); }
-
 /// Has a probability grown?
 struct GrowthEvidence {
   bool grew = false;   // with the confidence that was asked for
@@ -68,46 +68,60 @@ struct GrowthEvidence {
   std::string words;
 };
 
-/// By Fisher's exact test; where a number of runs depends on what they showed, by bounds that hold
-/// whenever one looks.
-GrowthEvidence weigh_growth(const RateCounts& before, const RateCounts& after, double level) {
+/// The error that a rule may spend, and the number of tests that share it.
+struct SharedError {
+  double error = 0.05;
+  std::size_t tests = 1;
+
+  double of_one() const { return error / static_cast<double>(tests); }
+};
+
+/// Fisher's exact test; where a number of runs depends on what they showed, bounds that hold
+/// whenever one looks. The p-value that is shown is multiplied by the number of tests.
+GrowthEvidence weigh_growth(const RateCounts& before, const RateCounts& after,
+                            const SharedError& shared) {
   if (before.fixed && after.fixed) {
-    const double chance = fisher_worse(before, after);
-    const bool grew = chance <= 1.0 - level;
-    return {grew, chance, fmt::format("{}p = {:.2g}", grew ? "Fisher's exact test, " : "", chance)};
+    const double chance = harness::fisher_worse(before, after);
+    const bool grew = chance <= shared.of_one();
+    const bool is_adjusted = shared.tests > 1;
+    const auto p = harness::p_text(std::min(1.0, chance * static_cast<double>(shared.tests)));
+    return {grew, chance,
+            fmt::format("{}{}{}", grew ? "Fisher's exact test, " : "",
+                        is_adjusted ? "adjusted " : "", p)};
   }
-  const bool grew = is_surely_worse(before, after, level);
+  const bool grew = harness::is_surely_worse(before, after, 1.0 - shared.of_one());
   return {grew, grew ? 0.0 : 1.0,
           fmt::format("bounds that hold whenever one looks {}", grew ? "part" : "overlap")};
 }
 
-/// What the two counts of one trace say. `level`: the confidence of finding a rate worse.
+/// What the two counts of one trace say.
 RuleOutcome weigh_change(const RateCounts& before, const RateCounts& after,
-                         const harness::GateRules::Worse& worse, double level, std::string& words) {
+                         const harness::GateRules::Worse& worse, const SharedError& shared,
+                         std::string& words) {
   const double bound = excess_bound(before, after, worse.confidence);
   if (bound < worse.margin) {
-    words =
-        fmt::format("{}: worse by less than {}", change_text(before, after), percent(worse.margin));
+    words = fmt::format("{}: worse by less than {}", change_text(before, after),
+                        harness::percent_up(worse.margin));
     return RuleOutcome::kKept;
   }
-  const auto evidence = weigh_growth(before, after, level);
+  const auto evidence = weigh_growth(before, after, shared);
   words = change_text(before, after);
   words += evidence.grew ? fmt::format(": worse ({})", evidence.words)
                          : fmt::format(": may be worse by up to {} ({}); more runs would tell",
-                                       percent(bound), evidence.words);
+                                       harness::percent_up(bound), evidence.words);
   return evidence.grew ? RuleOutcome::kBroken : RuleOutcome::kUndecided;
 }
 
 RuleResult rate_rule(const RatesRevision& before, const RatesRevision& after,
-                     const harness::GateRules::Worse& worse) {
+                     const harness::GateRules::Worse& worse, double error) {
   RuleResult out{"rates.worse", RuleOutcome::kKept, {}};
   // Any of the traces may be found worse by chance.
-  const double level = 1.0 - (1.0 - worse.confidence) / static_cast<double>(before.traces.size());
+  const SharedError shared{error, before.traces.size()};
   std::size_t broken = 0, open = 0;
   for (const auto& trace : before.traces) {
     std::string words;
     const auto outcome =
-        weigh_change(trace.any, rates_for(after, trace.events)->any, worse, level, words);
+        weigh_change(trace.any, rates_for(after, trace.events)->any, worse, shared, words);
     broken += outcome == RuleOutcome::kBroken ? 1 : 0;
     open += outcome == RuleOutcome::kUndecided ? 1 : 0;
     if (outcome != RuleOutcome::kKept) {
@@ -118,15 +132,15 @@ RuleResult rate_rule(const RatesRevision& before, const RatesRevision& after,
   }
   if (broken > 0) {
     out.outcome = RuleOutcome::kBroken;
-    out.words = fmt::format("{} of {} rates worse with {:g} % confidence", broken,
-                            before.traces.size(), 100 * worse.confidence);
+    out.words = fmt::format("{} of {} rates worse with {} confidence", broken, before.traces.size(),
+                            harness::level_text(1.0 - error));
   } else if (open > 0) {
     out.outcome = RuleOutcome::kUndecided;
     out.words = fmt::format("{} of {} rates not known to be worse by less than {}", open,
-                            before.traces.size(), percent(worse.margin));
+                            before.traces.size(), harness::percent_up(worse.margin));
   } else if (out.words.empty()) {
     out.words = fmt::format("{} rates, none worse by {} or more", before.traces.size(),
-                            percent(worse.margin));
+                            harness::percent_up(worse.margin));
   }
   return out;
 }
@@ -138,41 +152,51 @@ std::int64_t times(const RevisionRates& trace, const std::string& cause) {
   return 0;
 }
 
+/// Number of causes that either side shows, over all traces. Given how often each of them came on
+/// both sides together, any may have come on the newer side alone by chance, also those that did
+/// not: so many tests share the error, not only those that turned out to be of interest.
+std::size_t causes_of_either(const RatesRevision& before, const RatesRevision& after) {
+  std::size_t out = 0;
+  for (const auto& trace : after.traces) {
+    std::set<std::string> seen;
+    for (const auto* side : {&trace, rates_for(before, trace.events)}) {
+      for (const auto& cause : side->causes) {
+        if (cause.count > 0) seen.insert(cause.text);
+      }
+    }
+    out += seen.size();
+  }
+  return out;
+}
+
 /// Causes that only the newer rates have: broken where that is hardly chance.
-RuleResult cause_rule(const RatesRevision& before, const RatesRevision& after, double confidence) {
+RuleResult cause_rule(const RatesRevision& before, const RatesRevision& after, double error) {
   RuleResult out{"rates.gained_causes", RuleOutcome::kKept, "none gained"};
-  std::vector<std::pair<RateCounts, RateCounts>> gained;
-  std::vector<std::string> names;
+  const SharedError shared{error, causes_of_either(before, after)};
+  std::vector<std::pair<double, std::string>> shown;
+  bool broken = false;
   for (const auto& trace : after.traces) {
     const auto* old = rates_for(before, trace.events);
     for (const auto& cause : trace.causes) {
-      if (times(*old, cause.text) > 0) continue;
+      if (cause.count == 0 || times(*old, cause.text) > 0) continue;
       auto none = old->any, some = trace.any;
       none.failures = 0;
       some.failures = cause.count;
-      gained.emplace_back(none, some);
-      names.push_back(fmt::format("{}: {}", trace.events, cause.text));
+      const auto evidence = weigh_growth(none, some, shared);
+      broken = broken || evidence.grew;
+      shown.emplace_back(evidence.order, fmt::format("{}: {}, {} ({})\n", trace.events, cause.text,
+                                                     change_text(none, some), evidence.words));
     }
   }
-  if (gained.empty()) return out;
-  const double level = 1.0 - (1.0 - confidence) / static_cast<double>(gained.size());
-  std::vector<std::pair<double, std::string>> shown;
-  bool broken = false;
-  for (std::size_t i = 0; i < gained.size(); ++i) {
-    const auto& [none, some] = gained[i];
-    const auto evidence = weigh_growth(none, some, level);
-    broken = broken || evidence.grew;
-    shown.emplace_back(evidence.order, fmt::format("{}, {} ({})\n", names[i],
-                                                   change_text(none, some), evidence.words));
-  }
+  if (shown.empty()) return out;
   std::stable_sort(shown.begin(), shown.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& [order, text] : shown) out.witness += text;
   out.outcome = broken ? RuleOutcome::kBroken : RuleOutcome::kUndecided;
-  out.words = broken ? fmt::format("{} gained, with {:g} % confidence not all by chance",
-                                   gained.size(), 100 * confidence)
+  out.words = broken ? fmt::format("{} gained, with {} confidence not all by chance", shown.size(),
+                                   harness::level_text(1.0 - error))
                      : fmt::format("{} seen that the older runs did not show, which may be chance",
-                                   gained.size());
+                                   shown.size());
   return out;
 }
 
@@ -184,15 +208,23 @@ base::Result<std::vector<RuleResult>> gate_rates(const GateInput& input,
   const auto before = load_rates(input.old_path, context);
   const auto after = load_rates(input.new_path, context);
   if (!before || !after) return context.sink().already_reported();
-  const auto why_not = not_comparable(*before, *after);
+  return hold_rates(*before, *after, rules);
+}
+
+std::vector<RuleResult> hold_rates(const RatesRevision& before, const RatesRevision& after,
+                                   const harness::GateRules::Rates& rules) {
+  const auto why_not = not_comparable(before, after);
   std::vector<RuleResult> out;
   const auto add = [&](const char* name, const auto& rule) {
     out.push_back(why_not.empty() ? rule() : RuleResult{name, RuleOutcome::kUndecided, why_not});
   };
   const auto worse = rules.worse.value_or(harness::GateRules::Worse{});
-  if (rules.worse) add("rates.worse", [&] { return rate_rule(*before, *after, worse); });
+  // The chance that a gate breaks where nothing changed is that of any of its rules.
+  const double asked = (rules.worse ? 1.0 : 0.0) + (rules.gained_causes ? 1.0 : 0.0);
+  const double error = (1.0 - worse.confidence) / std::max(1.0, asked);
+  if (rules.worse) add("rates.worse", [&] { return rate_rule(before, after, worse, error); });
   if (rules.gained_causes) {
-    add("rates.gained_causes", [&] { return cause_rule(*before, *after, worse.confidence); });
+    add("rates.gained_causes", [&] { return cause_rule(before, after, error); });
   }
   return out;
 }

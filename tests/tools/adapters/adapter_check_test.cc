@@ -87,6 +87,9 @@ constexpr Misbehaviour kMisbehaviours[] = {
     {"has randomness of its own",
      "if method == 'act' and result['status'] == 'ok': state['box.x'] += random.random()", "seeds",
      "the same one gives other results"},
+    {"wears out after 90 resets",
+     "if method == 'act' and memory['resets'] > 90: state['box.x'] = 0.0", "wear",
+     "the first run, made again, gives another result after 120 resets"},
     {"ignores the seed it says to use", "if method == 'reset': rng.seed(1)", "seeds",
      "four seeds give the same result"},
     {"takes any start", "if method == 'reset': result['status'] = 'ok'", "invalid start",
@@ -220,7 +223,7 @@ TEST_CASE("simulators without a fault are said to have none, and what they suppo
     const auto report = Json::parse(result.out);
     CHECK(report.at("findings") == Json::array());
     CHECK(report.at("complete") == true);
-    CHECK(report.at("checks").size() == 11);
+    CHECK(report.at("checks").size() == 12);
     for (const auto& check : report.at("checks")) CHECK(check.at("state") == "ok");
     CHECK(report.at("measured").at("determinism") == "bitwise");
     CHECK(report.at("measured").at("largest_start_deviation") == 0.0);
