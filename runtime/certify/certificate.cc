@@ -186,34 +186,21 @@ void CompletenessClaim::add(const Trace& trace) {
 
 std::vector<Literal> CompletenessClaim::given() const {
   std::vector<Literal> literals;
-  if (model_.has_constraints) return literals;
   for (Timepoint t = 1; t <= model_.horizon; ++t) literals.push_back(lengths_.reaches(t));
   return literals;
 }
 
 void CompletenessClaim::visit_model(const Visit& visit) const {
-  std::vector<Literal> guarded;
-  for (std::size_t i = 0; i < model_.clauses.size(); ++i) {
-    const auto t = model_.clause_timepoints[i];
-    const bool always = !model_.has_constraints || t == 0 || model_.clause_is_definition[i];
-    if (always) {
-      visit(model_.clauses[i]);
-      continue;
-    }
-    guarded.assign(model_.clauses[i].begin(), model_.clauses[i].end());
-    guarded.push_back(~lengths_.reaches(t));
-    visit(guarded);
-  }
+  for (std::size_t i = 0; i < model_.clauses.size(); ++i) visit(model_.clauses[i]);
 }
 
-/// A trace that ends at n reaches n, and the constraints hold there and at no earlier timepoint (0
-/// counts if it has a hit atom).
+/// Where a trace ends, at n, the constraints hold, and at no earlier timepoint (0 counts if it has
+/// a hit atom).
 void CompletenessClaim::visit_end(Timepoint n, const Visit& visit) const {
   const auto imply = [&](Literal consequence) {
     const Literal clause[] = {~lengths_.ends(n), consequence};
     visit(clause);
   };
-  for (Timepoint t = 1; t <= n; ++t) imply(lengths_.reaches(t));
   for (Timepoint t = 0; t <= n; ++t) {
     const auto hit = index_.hit(t);
     PARALLAX_REQUIRE(hit.has_value() || t == 0, "every timepoint from 1 has its hit atom");
@@ -221,13 +208,12 @@ void CompletenessClaim::visit_end(Timepoint n, const Visit& visit) const {
   }
 }
 
-/// One that goes on reaches the horizon without that.
+/// A trace that goes on never meets the constraints within the horizon.
 void CompletenessClaim::visit_going_on(const Visit& visit) const {
   const auto imply = [&](Literal consequence) {
     const Literal clause[] = {~lengths_.goes_on(), consequence};
     visit(clause);
   };
-  for (Timepoint t = 1; t <= model_.horizon; ++t) imply(lengths_.reaches(t));
   for (Timepoint t = 0; t <= model_.horizon; ++t) {
     if (const auto hit = index_.hit(t)) imply(~*hit);
   }

@@ -25,10 +25,9 @@ namespace parallax::runtime {
 ///
 /// Without state constraints a trace is a valuation of HoldsAt and Happens at the full horizon, and
 /// its clause says that one of them is different. With constraints a trace is a sequence of events
-/// and of what performs returned, up to the first hit. Then the formula also chooses a length, by
-/// variables beyond those of the model: `ends` n implies the clauses of the timepoints up to n,
-/// that the constraints hold at n and not before; a blocking clause binds the length that its trace
-/// has.
+/// and of what performs returned, up to the first hit, in a valuation of the full horizon. Then the
+/// formula also chooses a length, by variables beyond those of the model: `ends` n implies that the
+/// constraints hold at n and not before; a blocking clause binds the length that its trace has.
 class CompletenessClaim {
  public:
   /// `model` outlives the claim.
@@ -41,8 +40,7 @@ class CompletenessClaim {
   std::int64_t traces() const { return static_cast<std::int64_t>(traces_.size()); }
 
   std::int64_t variables() const { return variables_; }
-  /// What a search for traces may take for granted: without state constraints the claim is about
-  /// the whole horizon.
+  /// What a search for traces may take for granted: the claim is about the whole horizon.
   std::vector<compiler::Literal> given() const;
   using Visit = std::function<void(std::span<const compiler::Literal>)>;
   void for_each_clause(const Visit& visit) const;

@@ -39,7 +39,7 @@ class BackboneSearch {
  private:
   /// The traces of one length; false if the solver was stopped.
   bool explore(Timepoint n, const std::vector<Literal>& assumptions) {
-    const auto first = session_.solve(n, assumptions);
+    const auto first = session_.solve_whole(n, assumptions);
     if (first == SolveStatus::kUnknown) return false;
     if (first == SolveStatus::kUnsatisfiable) return true;
     note(n);
@@ -58,7 +58,7 @@ class BackboneSearch {
         session_.add_clause(some);
         auto assumed = assumptions;
         assumed.push_back(wanted);
-        status = session_.solve(n, assumed);
+        status = session_.solve_whole(n, assumed);
         const auto retired = ~wanted;
         session_.add_clause(std::span(&retired, 1));
       }
@@ -73,7 +73,7 @@ class BackboneSearch {
   }
 
   void note(Timepoint n) {
-    session_.require_model(n);
+    session_.require_model(session_.model().horizon);
     any_ = true;
     for (std::size_t i = 0; i < atoms_.size(); ++i) {
       if (needed_[i] > n) continue;

@@ -27,25 +27,15 @@ class RepeatedStep {
       if (failed && tried) tries.push_back(both(*failed, *tried));
       if (failed && succeeded) successes.push_back(both(*failed, *succeeded));
     }
-    if (solve(any(tries), horizon_) != SolveStatus::kSatisfiable) return false;
-    if (solve(any(successes), horizon_) != SolveStatus::kUnsatisfiable) return false;
-    // An execution need not have a continuation up to the horizon.
-    for (Timepoint t = 2; t < horizon_; ++t) {
-      const auto failed = failed_[static_cast<std::size_t>(t) - 1];
-      const auto succeeded = at(AtomKind::kSucceeded, step_, t);
-      if (!failed || !succeeded) continue;
-      if (solve(both(*failed, *succeeded), t) != SolveStatus::kUnsatisfiable) return false;
-    }
-    return true;
+    return solve(any(tries)) == SolveStatus::kSatisfiable &&
+           solve(any(successes)) == SolveStatus::kUnsatisfiable;
   }
 
  private:
   std::optional<Literal> at(AtomKind kind, std::size_t step, Timepoint t) const {
     return index_.plan(kind, compiler::PlanStepId(static_cast<std::uint32_t>(step)), t);
   }
-  SolveStatus solve(Literal wanted, Timepoint n) {
-    return session_.solve(n, std::span(&wanted, 1));
-  }
+  SolveStatus solve(Literal wanted) { return session_.solve(horizon_, std::span(&wanted, 1)); }
   /// A literal that implies one of the others.
   Literal any(std::vector<Literal> literals) {
     const auto out = session_.new_variable();
@@ -99,33 +89,23 @@ std::vector<std::size_t> dead_steps(SolverSession& session,
 bool can_fail(SolverSession& session, const std::vector<std::size_t>& steps) {
   const compiler::AtomIndex index(session.model());
   const auto horizon = session.model().horizon;
-  std::vector<std::vector<Literal>> failures(static_cast<std::size_t>(horizon) + 1);
+  std::vector<Literal> ways;
   for (const auto step : steps) {
     const compiler::PlanStepId id(static_cast<std::uint32_t>(step));
     for (Timepoint t = 0; t < horizon; ++t) {
       const auto tried = index.plan(AtomKind::kLocation, id, t);
       if (!tried) continue;
       const auto succeeded = index.plan(AtomKind::kSucceeded, id, t + 1);
-      const auto failed = session.new_variable();
-      session.add_clause(std::vector{~failed, *tried});
-      if (succeeded) session.add_clause(std::vector{~failed, ~*succeeded});
-      failures[static_cast<std::size_t>(t) + 1].push_back(failed);
+      ways.push_back(session.new_variable());
+      session.add_clause(std::vector{~ways.back(), *tried});
+      if (succeeded) session.add_clause(std::vector{~ways.back(), ~*succeeded});
     }
   }
-  // An execution need not have a continuation up to the horizon.
-  for (Timepoint n = horizon; n >= 1; --n) {
-    std::vector<Literal> ways;
-    for (Timepoint t = n == horizon ? 1 : n; t <= n; ++t) {
-      const auto& here = failures[static_cast<std::size_t>(t)];
-      ways.insert(ways.end(), here.begin(), here.end());
-    }
-    if (ways.empty()) continue;
-    const auto any = session.new_variable();
-    ways.push_back(~any);
-    session.add_clause(ways);
-    if (session.solve(n, std::span(&any, 1)) != SolveStatus::kUnsatisfiable) return true;
-  }
-  return false;
+  if (ways.empty()) return false;
+  const auto any = session.new_variable();
+  ways.push_back(~any);
+  session.add_clause(ways);
+  return session.solve(horizon, std::span(&any, 1)) != SolveStatus::kUnsatisfiable;
 }
 
 }  // namespace parallax::runtime

@@ -83,6 +83,45 @@ void PlanEnumerator::prepare_orders(Timepoint n) {
   for (const auto& [what, literal] : results) key_order_.push_back(literal);
 }
 
+/// `assumptions` and, in their order, the literals of a valuation with this horizon, which the
+/// session holds. None: the solver was stopped.
+std::optional<std::vector<Literal>> PlanEnumerator::settle(const std::vector<Literal>& assumptions,
+                                                           const std::vector<Literal>& searched,
+                                                           Timepoint horizon) {
+  auto fixed = assumptions;
+  for (const auto* order : {&key_order_, &start_order_, &state_order_, &choice_order_}) {
+    // Which key it is, is asked of representatives, unless the first is wanted, which need not be
+    // the first of those; what belongs to the key, of all.
+    const bool first = options_.order == TraceOrder::kCanonical && !options_.representatives;
+    const auto& under = order == &key_order_ && !first ? searched : fixed;
+    const auto found = in_order(*session_, horizon, under, *order, options_.order);
+    if (!found) return std::nullopt;
+    fixed.insert(fixed.end(), found->literals.begin(), found->literals.end());
+  }
+  return fixed;
+}
+
+/// The next trace of length n_ as `settle` makes it, in a valuation of the whole horizon. It is
+/// looked for among prefixes, which are cheaper: the first prefix that goes on is the first trace.
+SolveStatus PlanEnumerator::find_settled(const std::vector<Literal>& assumptions,
+                                         const std::vector<Literal>& searched,
+                                         std::vector<Literal>& fixed) {
+  const auto horizon = session_->model().horizon;
+  auto status = session_->solve(n_, searched);
+  if (status != SolveStatus::kSatisfiable) return status;
+  auto settled = settle(assumptions, searched, n_);
+  if (!settled) return SolveStatus::kUnknown;
+  if (n_ < horizon) status = session_->solve(horizon, *settled);
+  if (status == SolveStatus::kUnsatisfiable) {
+    status = session_->solve(horizon, searched);
+    if (status == SolveStatus::kSatisfiable) settled = settle(assumptions, searched, horizon);
+    if (!settled) return SolveStatus::kUnknown;
+    if (status == SolveStatus::kUnsatisfiable && !dead_end_) dead_end_ = n_;
+  }
+  fixed = *std::move(settled);
+  return status;
+}
+
 std::optional<Trace> PlanEnumerator::next() {
   while (!done_) {
     if (!guard_) {
@@ -98,7 +137,8 @@ std::optional<Trace> PlanEnumerator::next() {
     auto searched = assumptions;
     const auto broken = breaking();
     if (broken) searched.push_back(*broken);
-    const auto status = session_->solve(n_, searched);
+    std::vector<Literal> fixed;
+    const auto status = find_settled(assumptions, searched, fixed);
     if (status == SolveStatus::kUnknown) {
       done_ = true;
       return std::nullopt;
@@ -111,18 +151,7 @@ std::optional<Trace> PlanEnumerator::next() {
       guard_.reset();
       continue;
     }
-    auto fixed = std::move(assumptions);
-    const auto head = fixed.size();
-    for (const auto* order : {&key_order_, &start_order_, &state_order_, &choice_order_}) {
-      // Which key it is, is asked of representatives, unless the first is wanted, which need not be
-      // the first of those; what belongs to the key, of all.
-      const bool first = options_.order == TraceOrder::kCanonical && !options_.representatives;
-      const auto& under = order == &key_order_ && !first ? searched : fixed;
-      const auto found = in_order(*session_, n_, under, *order, options_.order);
-      done_ = !found;
-      if (done_) return std::nullopt;
-      fixed.insert(fixed.end(), found->literals.begin(), found->literals.end());
-    }
+    const auto head = assumptions.size();
     auto trace = decode_trace(session_->model(), symbols_, n_,
                               [&](Literal literal) { return session_->value(literal); });
     trace.number = ++found_;
@@ -146,7 +175,7 @@ base::Known PlanEnumerator::has_alternative(std::span<const Literal> fixed,
   session_->add_clause(clause);
   std::vector<Literal> assumptions(fixed.begin(), fixed.end());
   assumptions.push_back(wanted);
-  const auto status = session_->solve(n_, assumptions);
+  const auto status = session_->solve_whole(n_, assumptions);
   const auto retired = ~wanted;
   session_->add_clause(std::span(&retired, 1));
   return possible(status);
@@ -197,7 +226,7 @@ base::Known PlanEnumerator::admits(
       assumptions.push_back(wanted->second ? literal : ~literal);
     }
   });
-  return possible(session_->solve(n, assumptions));
+  return possible(session_->solve_whole(n, assumptions));
 }
 
 /// Is there an execution that never meets the constraints and goes on beyond the horizon?

@@ -44,7 +44,8 @@ struct OpenEnds {
 };
 
 /// The traces of a model (with or without a plan) that end where the state constraints hold for
-/// the first time, at the first timepoint that has a hit atom (1, of a violation 0) or later. Two
+/// the first time, at the first timepoint that has a hit atom (1, of a violation 0) or later, and
+/// that the model can continue to its horizon. A prefix that cannot go on is no trace. Two
 /// traces are one if their event sequences and the objects that their performs returned are equal;
 /// the first initial state in canonical order stands for them. Shortest first; among equals the
 /// order of the model's events decides. Deterministic: the order does not depend on the solver's.
@@ -60,11 +61,15 @@ class PlanEnumerator {
   /// Why it is complete up to the bound only.
   const OpenEnds& open_ends() const { return open_ends_; }
 
+  /// The first length at which the constraints are met by prefixes that cannot go on to the horizon
+  /// and whose key no trace has. Only lengths without further traces are known to have one.
+  std::optional<Timepoint> dead_end() const { return dead_end_; }
+
   /// That there are no others was found for one trace of each orbit only.
   bool by_symmetry() const { return by_symmetry_; }
 
   /// Does the model admit, for the trace's events and initial state, a last state in which each of
-  /// these fluents has the value given? One solver call.
+  /// these fluents has the value given, and which it can continue? At most two solver calls.
   base::Known admits(const Trace& trace,
                      const std::vector<std::map<compiler::FluentId, bool>>& observed);
   /// Of the traces' ids.
@@ -76,6 +81,11 @@ class PlanEnumerator {
   base::Known has_alternative(std::span<const Literal> fixed, std::span<const Literal> different);
   void note_alternatives(std::span<const Literal> fixed, std::size_t length, Trace& trace);
   std::vector<Literal> hit_at(Timepoint n) const;
+  std::optional<std::vector<Literal>> settle(const std::vector<Literal>& assumptions,
+                                             const std::vector<Literal>& searched,
+                                             Timepoint horizon);
+  SolveStatus find_settled(const std::vector<Literal>& assumptions,
+                           const std::vector<Literal>& searched, std::vector<Literal>& fixed);
   void prepare_orders(Timepoint n);
   void finish();
   bool find_open_ends(std::span<const Literal> unmet, bool running);
@@ -101,6 +111,7 @@ class PlanEnumerator {
   std::optional<SymmetryBreaker> breaker_;
   bool by_symmetry_ = false;
   bool done_ = false;
+  std::optional<Timepoint> dead_end_;
   Exploration exploration_ = Exploration::kStopped;
   OpenEnds open_ends_;
 };

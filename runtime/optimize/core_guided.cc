@@ -75,9 +75,9 @@ void CoreGuidedSearch::add_soft(Literal good, std::int64_t weight) {
 SolveStatus CoreGuidedSearch::solve(std::span<const Literal> softs) {
   auto assumptions = assumed_;
   assumptions.insert(assumptions.end(), softs.begin(), softs.end());
-  const auto status = session_.solve(n_, assumptions);
+  const auto status = session_.solve_whole(n_, assumptions);
   if (status == SolveStatus::kSatisfiable) {
-    session_.require_model(n_);
+    session_.require_model(session_.model().horizon);
     note_();
     const auto value =
         objective_value(*objective_, n_, [&](Literal literal) { return session_.value(literal); });

@@ -99,7 +99,7 @@ ReplayVerdict TraceReplay::replay(const ClaimedTrace& trace) {
   const auto units = units_of(trace);
   if (auto impossible = impossible_claim(trace)) {
     // Something before it may fail as well.
-    auto earlier = find_failure(units, impossible->timepoint);
+    auto earlier = find_failure(units, 0, impossible->timepoint);
     if (earlier.kind == Kind::kFails && earlier.timepoint < impossible->timepoint) {
       impossible = std::move(earlier);
     }
@@ -115,24 +115,30 @@ ReplayVerdict TraceReplay::replay(const ClaimedTrace& trace) {
     }
   }
   ReplayVerdict verdict;
-  const auto status = solve(units, length, hits);
+  auto status = solve(units, length, hits);
+  const bool goes_this_far = status == SolveStatus::kSatisfiable;
+  if (goes_this_far && length < model_->horizon) status = solve(units, model_->horizon, hits);
   if (status == SolveStatus::kSatisfiable) {
     verdict.kind = Kind::kAgrees;
     verdict.completion = decode_trace(*model_, symbols_, length,
                                       [&](Literal literal) { return session_.value(literal); });
     verdict.completion.number = trace.number;
+  } else if (status == SolveStatus::kUnsatisfiable && goes_this_far) {
+    verdict = find_failure(units, length + 1, model_->horizon);
+    if (verdict.kind == Kind::kAgrees) verdict = find_end(units, length);
   } else if (status == SolveStatus::kUnsatisfiable) {
-    verdict = find_failure(units, length);
+    verdict = find_failure(units, 0, length);
     if (verdict.kind == Kind::kAgrees) verdict = find_end(units, length);
   }
   verdict.hidden = units.hidden;
   return verdict;
 }
 
-/// The first timepoint up to which nothing goes with the claims; kAgrees if there is none.
-ReplayVerdict TraceReplay::find_failure(const Units& units, Timepoint length) {
+/// The first timepoint from `first` to `last` up to which nothing goes with the claims; kAgrees if
+/// there is none.
+ReplayVerdict TraceReplay::find_failure(const Units& units, Timepoint first, Timepoint last) {
   ReplayVerdict verdict;
-  for (Timepoint n = 0; n <= length; ++n) {
+  for (Timepoint n = first; n <= last; ++n) {
     const auto status = solve(units, n, {});
     if (status == SolveStatus::kSatisfiable) continue;
     verdict.kind = status == SolveStatus::kUnsatisfiable ? Kind::kFails : Kind::kUnknown;

@@ -19,7 +19,8 @@ namespace parallax::runtime {
 struct ReplayVerdict {
   enum class Kind : std::uint8_t {
     kAgrees,      // it is a trace of the model, with values for the atoms that it does not mention
-    kFails,       // up to `timepoint` no values of the other atoms make it one
+    kFails,       // up to `timepoint` no values of the other atoms make it one; behind its end: no
+                  // trace of the model goes on from it that far
     kNoFirstHit,  // it is one, but does not end where the state constraints first hold
     kUnknown      // the solver was stopped
   };
@@ -43,7 +44,7 @@ class TraceReplay {
   /// The lengths that traces of the model can have.
   std::pair<Timepoint, Timepoint> lengths() const;
   /// `trace` has one of these lengths and names atoms of the model only. One solver call if the
-  /// trace agrees, else one for each timepoint.
+  /// trace agrees and ends at the horizon, two if it ends before, else one for each timepoint.
   ReplayVerdict replay(const ClaimedTrace& trace);
   /// For a trace that fails at `timepoint`: origins of the model that cannot hold together with
   /// what it says. Copies the model.
@@ -62,7 +63,7 @@ class TraceReplay {
   Units units_of(const ClaimedTrace& trace) const;
   std::optional<ReplayVerdict> impossible_claim(const ClaimedTrace& trace) const;
   SolveStatus solve(const Units& units, Timepoint n, std::span<const Literal> more);
-  ReplayVerdict find_failure(const Units& units, Timepoint length);
+  ReplayVerdict find_failure(const Units& units, Timepoint first, Timepoint last);
   ReplayVerdict find_end(const Units& units, Timepoint length);
 
   const CompiledModel* model_;

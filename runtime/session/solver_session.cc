@@ -105,6 +105,7 @@ SolveStatus SolverSession::solve(Timepoint n, std::span<const Literal> assumptio
     solver_->assume(t <= n ? guard : ~guard);
   }
   for (const auto literal : assumptions) solver_->assume(in_solver(literal));
+  if (limit_) solver_->limit_conflicts(*std::exchange(limit_, std::nullopt));
   const auto status = solver_->solve();
   if (status == SolveStatus::kSatisfiable) {
     for (std::size_t v = 0; v < values_.size(); ++v) {
@@ -113,6 +114,15 @@ SolveStatus SolverSession::solve(Timepoint n, std::span<const Literal> assumptio
     }
   }
   return status;
+}
+
+SolveStatus SolverSession::solve_whole(Timepoint n, std::span<const Literal> assumptions) {
+  if (n >= model_->horizon) return solve(n, assumptions);
+  const auto limit = limit_;
+  const auto status = solve(n, assumptions);
+  if (status != SolveStatus::kSatisfiable) return status;
+  limit_ = limit;
+  return solve(model_->horizon, assumptions);
 }
 
 void SolverSession::require_model(Timepoint n) const {

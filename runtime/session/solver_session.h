@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -63,8 +64,12 @@ class SolverSession {
   void add_clause(std::span<const Literal> clause);
   /// Is there a valuation with horizon `n` under these assumptions? `values()` has it afterwards.
   SolveStatus solve(Timepoint n, std::span<const Literal> assumptions);
-  /// Of the next call of solve, which answers kUnknown after so many.
-  void limit_conflicts(std::int64_t most) { solver_->limit_conflicts(most); }
+  /// The same for a valuation up to `n` that goes on to the model's horizon. Two calls where there
+  /// is one: the first, which only needs the clauses up to `n`, refutes most of what can be
+  /// refuted.
+  SolveStatus solve_whole(Timepoint n, std::span<const Literal> assumptions);
+  /// Each solver call of the next `solve` or `solve_whole` answers kUnknown after so many.
+  void limit_conflicts(std::int64_t most) { limit_ = most; }
   /// Value of a literal in the valuation that the last satisfiable call found; it stays available
   /// until the next satisfiable call.
   bool value(Literal literal) const;
@@ -96,6 +101,7 @@ class SolverSession {
   std::vector<std::int32_t> solver_variables_;          // by variable - 1; 0: not handed over yet
   std::int32_t solver_variable_count_ = 0;
   std::vector<Literal> scratch_;
+  std::optional<std::int64_t> limit_;  // of conflicts, for the next call
 };
 
 /// A model in a solver of its own, in which the clauses of an origin (an index into

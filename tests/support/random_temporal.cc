@@ -128,6 +128,16 @@ std::string random_temporal_model(FuzzRandom& random) {
   if (random.chance(40)) {
     out += "[time] !Happens(Push(A),time) | !Happens(Push(B),time).\n";
   }
+  // What is demanded and what is ruled out can leave a state without a next one.
+  const std::vector<std::string> plain(states.begin(), states.end() - 1);
+  if (random.chance(40)) {
+    const auto* pushed = random.chance(50) ? "A" : "B";
+    const auto when = random.chance(30) ? "" : literal(random, plain) + " -> ";
+    out += "[time] " + when + "Happens(Push(" + pushed + "),time).\n";
+  }
+  if (random.chance(30)) {
+    out += "[time] !(" + literal(random, plain) + " & " + literal(random, plain) + ").\n";
+  }
   if (random.chance(50)) {
     out += random.chance(50) ? "HoldsAt(G(),0).\n" : "[thing] !HoldsAt(On(thing),0).\n";
   }

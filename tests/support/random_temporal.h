@@ -29,8 +29,9 @@ struct TemporalFormula {
 /// Operators nested at most `depth` deep. `bound`: a quantifier over `thing` stands around it.
 TemporalFormula random_temporal(FuzzRandom& random, int depth, bool bound = false);
 
-/// A model over these symbols with random effects, preconditions and start. Every prefix of a trace
-/// can go on, by doing nothing; a start and events determine the rest.
+/// A model over these symbols with random effects, preconditions, demanded events, state
+/// constraints and start. Some have prefixes that cannot go on, some no trace; a start and events
+/// determine the rest.
 std::string random_temporal_model(FuzzRandom& random);
 
 }  // namespace parallax::test

@@ -192,7 +192,7 @@ bool ScenarioCoverWatch::look_at(const PlanReach& reach, Timepoint n) {
     session.add_clause(clause);
     auto assumed = assumptions;
     assumed.push_back(some);
-    const auto status = session.solve(n, assumed);
+    const auto status = session.solve_whole(n, assumed);
     if (status == SolveStatus::kUnknown) return false;
     if (status == SolveStatus::kSatisfiable) {
       for (const auto& one : open) {

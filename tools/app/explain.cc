@@ -89,7 +89,7 @@ std::optional<ValuedTrace> value(const compiler::CompiledModel& model, const run
     if (kind == AtomKind::kHappens) say(runtime::contains(point.happens, atom.event()));
     if (kind == AtomKind::kReleasedAt) say(runtime::contains(point.released, atom.fluent()));
   });
-  if (session.solve(trace.length(), assumptions) != runtime::SolveStatus::kSatisfiable) {
+  if (session.solve_whole(trace.length(), assumptions) != runtime::SolveStatus::kSatisfiable) {
     return std::nullopt;
   }
   ValuedTrace valued{trace.length(), {}};

@@ -162,7 +162,7 @@ bool PlanReach::look_at(Timepoint n) {
     session.add_clause(clause);
     auto assumed = assumptions;
     assumed.push_back(some);
-    const auto status = session.solve(n, assumed);
+    const auto status = session.solve_whole(n, assumed);
     const auto retired = ~some;
     session.add_clause(std::span(&retired, 1));
     if (status == SolveStatus::kUnknown) return false;

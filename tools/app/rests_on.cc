@@ -65,7 +65,7 @@ class Executions {
   }
 
   base::Known some(Timepoint steps, const std::vector<Literal>& happens) {
-    switch (session_.solve(steps, happens)) {
+    switch (session_.solve_whole(steps, happens)) {
       case runtime::SolveStatus::kSatisfiable:
         return base::Known::kYes;
       case runtime::SolveStatus::kUnsatisfiable:

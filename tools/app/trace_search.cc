@@ -207,6 +207,7 @@ Ending list_plan_traces(const SearchOptions& options, const compiler::CompiledMo
   ending.exploration = runtime::to_string(enumerator.exploration());
   ending.complete = enumerator.exploration() == runtime::Exploration::kAllTracesExplored;
   ending.bounds = open_end_texts(model, enumerator.open_ends());
+  ending.dead_end = enumerator.dead_end();
   ending.searched = true;
   return ending;
 }

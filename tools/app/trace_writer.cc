@@ -87,6 +87,13 @@ std::vector<std::string> open_end_texts(const compiler::CompiledModel& model,
   return out;
 }
 
+std::string dead_end_text(const compiler::CompiledModel& model, std::string_view does,
+                          compiler::Timepoint length) {
+  return fmt::format(
+      "a prefix that cannot go on {} at timepoint {}: no trace of horizon {} begins like that",
+      does, length, model.horizon);
+}
+
 std::string bounds_field(const std::vector<std::string>& bounds) {
   if (bounds.empty()) return {};
   return fmt::format("\"bounds\":{},", base::json_text(nlohmann::json(bounds)));

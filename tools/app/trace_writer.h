@@ -59,6 +59,11 @@ class TraceWriter {
 std::vector<std::string> open_end_texts(const compiler::CompiledModel& model,
                                         const runtime::OpenEnds& ends);
 
+/// "a prefix that cannot go on violates the property at timepoint 1: no trace of horizon 4 begins
+/// like that"; `does`: "violates the property".
+std::string dead_end_text(const compiler::CompiledModel& model, std::string_view does,
+                          compiler::Timepoint length);
+
 /// "plan.lisp:3:5"; empty for a place that is not known.
 std::string place_text(const compiler::TextPlace& place);
 

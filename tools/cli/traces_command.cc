@@ -52,10 +52,14 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
   }
   if (!stopped) invocation.answered();
   for (const auto& bound : ending.bounds) invocation.remark(bound);
+  if (ending.dead_end) {
+    invocation.remark(dead_end_text(model, "meets the constraints", *ending.dead_end));
+  }
   auto fields = certifier.fields();
   if (best != nullptr) {
     fields = best->fields() + (best->proof_fields().empty() ? fields : best->proof_fields());
   }
+  if (ending.dead_end) fields += fmt::format("\"dead_end\":{},", *ending.dead_end);
   std::string in_all;
   if (options.search.up_to_symmetry) {
     fields += fmt::format("\"up_to_symmetry\":true,\"in_all\":{},", ending.in_all);

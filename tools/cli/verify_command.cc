@@ -41,6 +41,7 @@ struct Answer {
   std::optional<runtime::Trace> violation;
   runtime::Exploration exploration = runtime::Exploration::kStopped;
   std::vector<std::string> bounds;
+  std::optional<compiler::Timepoint> dead_end;  // of prefixes that violate it and cannot go on
   bool by_symmetry = false;  // that there is none was found among representatives only
   bool by_cubes = false;     // it was searched without a log
   std::string proof;         // "proof checked"; empty where there is nothing to prove
@@ -63,6 +64,7 @@ Answer ask(const compiler::CompiledModel& model, std::unique_ptr<runtime::SatSol
   answer.violation = enumerator.next();
   answer.exploration = enumerator.exploration();
   answer.bounds = open_end_texts(model, enumerator.open_ends());
+  answer.dead_end = enumerator.dead_end();
   answer.by_symmetry = enumerator.by_symmetry();
   return answer;
 }
@@ -192,6 +194,7 @@ std::string answer_json(const compiler::CompiledModel& model, const Answer& answ
   out["horizon"] = model.horizon;
   out["exploration"] = runtime::to_string(answer.exploration);
   if (!answer.bounds.empty()) out["bounds"] = answer.bounds;
+  if (answer.dead_end) out["dead_end"] = *answer.dead_end;
   if (answer.violation) {
     out["timepoint"] = answer.violation->length();
     if (answer.broken) {
@@ -270,9 +273,9 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   TraceCertifier certifier(certify, options.model.models, model, invocation);
   if (!certifier.ready()) return 0;
   auto answer = ask(model, certifier, !options.certify.file.empty(), options.jobs);
-  // Nothing can go wrong in a model without executions.
-  if (!answer.violation && answer.exploration != runtime::Exploration::kStopped &&
-      report_if_unsatisfiable(model, 0, invocation) == base::Known::kNo) {
+  // Nothing can go wrong in a model without executions. One that goes on is known to have some.
+  if (!answer.violation && answer.exploration == runtime::Exploration::kAllTracesExplored &&
+      report_if_unsatisfiable(model, model.horizon, invocation) == base::Known::kNo) {
     return 0;
   }
   const bool holds = !answer.violation && answer.exploration != runtime::Exploration::kStopped;
@@ -304,6 +307,9 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   } else {
     invocation.result(answer_text(model, answer) + rests_on_text(answer));
     for (const auto& bound : answer.bounds) invocation.remark(bound);
+    if (answer.dead_end) {
+      invocation.remark(dead_end_text(model, "violates the property", *answer.dead_end));
+    }
   }
   if (answer.violation) return 1;
   return answer.exploration == runtime::Exploration::kStopped ? 4 : 0;

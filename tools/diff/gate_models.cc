@@ -98,7 +98,8 @@ base::Result<PropertyAnswer> ask_property(const std::string& path, RevisionKind 
   }
   // Of a model without executions everything holds, which says nothing.
   const auto sink = context.sink();
-  const auto empty = report_if_unsatisfiable(compilation->model, 0, context);
+  const auto empty =
+      report_if_unsatisfiable(compilation->model, compilation->model.horizon, context);
   context.sink() = sink;
   if (empty == base::Known::kNo) {
     out.why = fmt::format("{} has no trace at all", path);

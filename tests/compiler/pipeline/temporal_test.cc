@@ -42,8 +42,7 @@ struct Compiled {
   }
 };
 
-/// The traces up to a timepoint. Each of a random_temporal_model goes on, so they are the
-/// beginnings of those up to the horizon.
+/// The beginnings, up to a timepoint, of the traces up to the horizon.
 std::vector<Valuation> all_traces(const std::string& model, int length) {
   const Compiled compiled(model, kHorizon);
   REQUIRE(compiled.result);
@@ -153,6 +152,76 @@ TEST_CASE("a property is violated where some trace is, and the trace that is giv
   CHECK(early > 20);
 }
 
+/// Has some valuation of the clauses up to this length no trace that begins like it?
+bool has_dead_end(const std::string& model, int length) {
+  const Compiled compiled(model, kHorizon);
+  REQUIRE(compiled.result);
+  const auto& clauses = compiled.result->model;
+  std::set<std::string> live;
+  for (const auto& trace : all_traces(model, length)) live.insert(signature(trace));
+  runtime::SolverSession session(clauses, runtime::make_cadical_solver());
+  while (session.solve(length, {}) == runtime::SolveStatus::kSatisfiable) {
+    const auto prefix =
+        runtime::decode_trace(clauses, runtime::symbols_of(clauses), length,
+                              [&](compiler::Literal literal) { return session.value(literal); });
+    if (!live.contains(signature(tools::valuation_of(prefix)))) return true;
+    std::vector<compiler::Literal> other;
+    clauses.for_each_atom([&](const compiler::AtomRef& atom) {
+      if (atom.needed_horizon(kHorizon) > length && length < kHorizon) return;
+      other.push_back(session.value(atom.literal()) ? ~atom.literal() : atom.literal());
+    });
+    session.add_clause(other);
+  }
+  return false;
+}
+
+TEST_CASE("state properties and goals are answered for traces that reach the horizon") {
+  FuzzRandom random(41);
+  int violated = 0, held = 0, dead = 0, goals = 0, told = 0;
+  for (int round = 0; round < 150; ++round) {
+    const auto model = random_temporal_model(random);
+    CAPTURE(model);
+    const auto traces = all_traces(model, kHorizon);
+    auto formula = random_temporal(random, 1);
+    while (formula.looks_on() || formula.looks_back()) formula = random_temporal(random, 1);
+    const auto text = formula.print();
+    if (text.find("Happens") != std::string::npos) continue;
+    CAPTURE(text);
+    std::optional<int> breaks, meets;
+    for (int n = kHorizon; n >= 0; --n) {
+      for (const auto& trace : traces) {
+        if (!formula.value(trace, n).value_or(true)) breaks = n;
+        if (formula.value(trace, n).value_or(false)) meets = n;
+      }
+    }
+    const auto length = [&](const std::string& asked, bool property) {
+      const Compiled compiled(model, kHorizon, asked, property);
+      REQUIRE(compiled.result);
+      runtime::SolverSession session(compiled.result->model, runtime::make_cadical_solver());
+      runtime::PlanEnumerator enumerator(session);
+      const auto found = enumerator.next();
+      const auto dead_end = enumerator.dead_end();
+      if (dead_end) {
+        ++told;
+        CHECK(has_dead_end(model, *dead_end));
+      }
+      return found ? std::optional<int>(found->length()) : std::nullopt;
+    };
+    CHECK(length(text, true) == breaks);
+    CHECK(length("always (" + text + ")", true) == breaks);
+    CHECK(length(text, false) == meets);
+    CHECK(length("eventually (" + text + ")", false) == meets);
+    ++(breaks ? violated : held);
+    if (meets) ++goals;
+    if (has_dead_end(model, 0)) ++dead;
+  }
+  CHECK(violated > 20);
+  CHECK(held > 20);
+  CHECK(goals > 20);
+  CHECK(dead > 20);
+  CHECK(told > 5);
+}
+
 TEST_CASE("a property that only looks back breaks at the first timepoint at which it can") {
   FuzzRandom random(7);
   for (int round = 0; round < 60; ++round) {
@@ -164,8 +233,9 @@ TEST_CASE("a property that only looks back breaks at the first timepoint at whic
     CAPTURE(model);
     CAPTURE(text);
     std::optional<int> first;
+    const auto traces = all_traces(model, kHorizon);
     for (int n = 0; n <= kHorizon && !first; ++n) {
-      for (const auto& trace : all_traces(model, n)) {
+      for (const auto& trace : traces) {
         if (!formula.value(trace, n).value_or(true)) first = n;
       }
     }

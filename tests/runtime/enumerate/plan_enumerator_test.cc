@@ -161,6 +161,34 @@ TEST_CASE("repetitions that cannot succeed are dead, those that a change helps a
   CHECK(dead(with_handler("(retry)"), kShut) == std::vector<std::size_t>{0});
 }
 
+TEST_CASE("a plan's trace is the beginning of an execution that reaches the horizon") {
+  // In b2 an alarm happens, where it is quiet; it never is.
+  const std::string alarmed =
+      kRooms +
+      "HoldsAt(At(a1),0).\nfluent Quiet()\nevent Alarm()\n!HoldsAt(Quiet(),0).\n"
+      "[time] HoldsAt(At(b2),time) -> Happens(Alarm(),time).\n"
+      "[time] Happens(Alarm(),time) -> HoldsAt(At(b2),time) & HoldsAt(Quiet(),time).\n";
+  for (const int horizon : {2, 4}) {
+    CAPTURE(horizon);
+    PlannedModel model(alarmed, kPlan, kBinding, "HoldsAt(At(b2),time)", horizon);
+    REQUIRE(model.compiles());
+    for (const auto order : {runtime::TraceOrder::kCanonical, runtime::TraceOrder::kAny}) {
+      runtime::SolverSession session(model.compiled(), runtime::make_cadical_solver());
+      runtime::PlanEnumerator enumerator(session, {.order = order});
+      const auto trace = enumerator.next();
+      CHECK(trace.has_value() == (horizon == 2));
+      if (trace) {
+        CHECK(runtime::event_key(*trace) == "Switch(a1);Go(b2);");
+        CHECK(!enumerator.next());
+        CHECK(!enumerator.dead_end());
+      } else {
+        CHECK(enumerator.exploration() == runtime::Exploration::kAllTracesExplored);
+        CHECK(enumerator.dead_end() == 2);
+      }
+    }
+  }
+}
+
 TEST_CASE("alternatives of a trace are noted, and asked about") {
   const std::string released = kRooms +
                                "HoldsAt(At(a1),0).\n!HoldsAt(Lit(a1),0).\n"
