@@ -317,8 +317,7 @@ FormulaWriter::Part FormulaWriter::compare(const TypedFormula& formula) {
   return part;
 }
 
-/// Memberships; the time of an event must have a successor. Said of the last timepoint by its
-/// number, an event exists and does not happen.
+/// Memberships; the time of an event must have a successor.
 AspBody FormulaWriter::needs_of_atom(const TypedFormula& formula, std::vector<AspTerm>& arguments) {
   const auto& symbol = model_.symbols[formula.predicate];
   const auto& core = model_.core;
@@ -328,11 +327,9 @@ AspBody FormulaWriter::needs_of_atom(const TypedFormula& formula, std::vector<As
   AspBody needs;
   for (std::size_t i = 0; i < formula.terms.size(); ++i) {
     const bool last = i + 1 == formula.terms.size();
-    const bool named = model_.terms[formula.terms[i]].kind == TermKind::kInteger;
-    auto value = last && (effect || (event && !named))
-                     ? terms_.term(formula.terms[i])
-                     : terms_.member(formula.terms[i], symbol.arguments[i]);
-    if (last && (effect || (event && !named))) {
+    auto value = last && (effect || event) ? terms_.term(formula.terms[i])
+                                           : terms_.member(formula.terms[i], symbol.arguments[i]);
+    if (last && (effect || event)) {
       value.needs.push_back(plain_literal(applied("step", {value.text})));
     }
     append(needs, value.needs);

@@ -189,7 +189,7 @@ std::optional<FormulaId> FormulaGrounder::atom(const TypedFormula& formula) {
     return is_holds ? model_->holds(*number, t) : model_->released(*number, t);
   }
   if (formula.predicate == core.happens) {
-    return occurrence(formula, arguments[0], static_cast<Timepoint>(terms[arguments[1]].integer));
+    return occurrence(arguments[0], static_cast<Timepoint>(terms[arguments[1]].integer));
   }
   if (formula.predicate == core.initiates) return effect_atom(EffectKind::kInitiates, arguments);
   if (formula.predicate == core.terminates) return effect_atom(EffectKind::kTerminates, arguments);
@@ -197,8 +197,9 @@ std::optional<FormulaId> FormulaGrounder::atom(const TypedFormula& formula) {
   return model_->predicate(model_->terms().apply(formula.predicate, arguments));
 }
 
-std::optional<FormulaId> FormulaGrounder::occurrence(const TypedFormula& atom, GroundTermId event,
-                                                     Timepoint t) const {
+/// Before the last timepoint only. How the timepoint is written, as a number or as a variable,
+/// makes no difference: a longer horizon must not change what is said of a shorter one.
+std::optional<FormulaId> FormulaGrounder::occurrence(GroundTermId event, Timepoint t) const {
   const auto number = model_->event_number(event);
   if (!number) return std::nullopt;
   if (t < model_->horizon()) return model_->happens(*number, t);
@@ -207,10 +208,6 @@ std::optional<FormulaId> FormulaGrounder::occurrence(const TypedFormula& atom, G
     if (!whole_axiom_ || depth_ > 0) return std::nullopt;
     return model_->happens_last(*number);
   }
-  // Said of the last timepoint itself, an event does not happen there; reached by a variable, the
-  // instance is beyond the horizon.
-  const bool named = typed_->terms[atom.terms[1]].kind == TermKind::kInteger;
-  if (named) return model_->formulas().falsity();
   return std::nullopt;
 }
 
@@ -319,9 +316,7 @@ bool FormulaGrounder::beyond_horizon(const TypedFormula& formula) {
   if (!time) return true;
   const auto t = model_->terms()[*time].integer;
   if (t < 0 || t > model_->horizon()) return true;
-  const bool named =
-      names_last_events_ || typed_->terms[formula.terms[1]].kind == TermKind::kInteger;
-  return formula.predicate == typed_->core.happens && t == model_->horizon() && !named;
+  return formula.predicate == typed_->core.happens && t == model_->horizon() && !names_last_events_;
 }
 
 bool FormulaGrounder::next_instance(Frame& frame) {

@@ -80,8 +80,7 @@ class FormulaGrounder {
   std::vector<TypedFormulaId> outer_atoms(const TypedFormula& quantifier) const;
   bool beyond_horizon(const TypedFormula& atom);
   bool runnable(const InstancePlan& plan, const std::vector<VariableId>& variables);
-  std::optional<FormulaId> occurrence(const TypedFormula& atom, GroundTermId event,
-                                      Timepoint t) const;
+  std::optional<FormulaId> occurrence(GroundTermId event, Timepoint t) const;
   std::optional<FormulaId> effect_atom(EffectKind kind, const std::vector<GroundTermId>& arguments);
   FormulaId effect_in_place(EffectKind kind, std::uint32_t event, std::uint32_t fluent,
                             Timepoint t) const;

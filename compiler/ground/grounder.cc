@@ -212,7 +212,7 @@ class Grounder {
     if (grounder_.failed()) return;
     if (!formula) {
       if (!axiom.is_foundation) {
-        sink_.error(codes::kNothingToSay, axiom.source, model_.horizon());
+        report_silent(axiom);
       }
       return;
     }
@@ -257,15 +257,17 @@ class Grounder {
       return true;
     }
     if (!is_false_whatever_happens(axiom)) return false;
-    auto error = sink_.error(codes::kFormulaIsFalse, axiom.source);
-    if (has_event_at(axiom.formula, model_.horizon())) {
-      const auto last = model_.horizon();
-      error.help(fmt::format(
-          "No event happens at the last timepoint, {0}, because nothing follows it: let time go "
-          "on with `range time 0 {1}` or --horizon {1}, or let the event happen earlier.",
-          last, last + 1));
-    }
+    sink_.error(codes::kFormulaIsFalse, axiom.source);
     return true;
+  }
+
+  void report_silent(const Axiom& axiom) {
+    auto error = sink_.error(codes::kNothingToSay, axiom.source, model_.horizon());
+    if (!has_event_at(axiom.formula, model_.horizon())) return;
+    error.help(fmt::format(
+        "No event happens at the last timepoint, {0}, because nothing follows it: let time go "
+        "on with `range time 0 {1}` or --horizon {1}, or let the event happen earlier.",
+        model_.horizon(), model_.horizon() + 1));
   }
 
   bool has_event_at(TypedFormulaId root, Timepoint timepoint) const {

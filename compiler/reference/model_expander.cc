@@ -339,7 +339,7 @@ std::optional<ModelExpander::Node> ModelExpander::atom(const TypedFormula& formu
   const auto arguments = terms_.arguments(symbol, formula.terms, environment_);
   if (!arguments) return std::nullopt;
   const auto& core = model_.core;
-  if (formula.predicate == core.happens) return event_atom(formula, *arguments);
+  if (formula.predicate == core.happens) return event_atom(*arguments);
   if (formula.predicate == core.holds_at || formula.predicate == core.released_at) {
     const auto fluent = out_.fluent(terms_.text((*arguments)[0]));
     const auto t = terms_.number((*arguments)[1]);
@@ -359,16 +359,13 @@ std::optional<ModelExpander::Node> ModelExpander::atom(const TypedFormula& formu
   return out_.trees_.atom(found->second);
 }
 
-/// Events before the last timepoint exist. Said of the last one by its number, an event does not
-/// happen there.
-std::optional<ModelExpander::Node> ModelExpander::event_atom(const TypedFormula& formula,
-                                                             const std::vector<Value>& arguments) {
+/// Events before the last timepoint exist, however the timepoint is written.
+std::optional<ModelExpander::Node> ModelExpander::event_atom(const std::vector<Value>& arguments) {
   const auto event = out_.event(terms_.text(arguments[0]));
   const auto t = terms_.number(arguments[1]);
   if (!event || !t) return std::nullopt;
   if (*t < out_.horizon_) return out_.trees_.atom(out_.happens(*event, *t));
-  const bool named = model_.terms[formula.terms[1]].kind == TermKind::kInteger;
-  if (named || events_end_) return FormulaTrees::kFalsity;
+  if (events_end_) return FormulaTrees::kFalsity;
   return std::nullopt;
 }
 

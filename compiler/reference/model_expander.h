@@ -56,7 +56,7 @@ class ModelExpander {
   std::optional<Node> quantified(const TypedFormula& formula);
   std::optional<Node> connected(const TypedFormula& formula);
   std::optional<Node> atom(const TypedFormula& formula);
-  std::optional<Node> event_atom(const TypedFormula& formula, const std::vector<Value>& arguments);
+  std::optional<Node> event_atom(const std::vector<Value>& arguments);
   std::optional<Node> effect_atom(EffectKind kind, const std::vector<Value>& arguments);
   std::optional<Node> compare(const TypedFormula& formula);
   std::optional<Value> term(TermId id) { return terms_.term(id, environment_); }

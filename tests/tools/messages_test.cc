@@ -98,7 +98,7 @@ TEST_CASE("an event at the last timepoint: why nothing happens there, and what t
             "range time 0 2\nfluent F()\nevent Flip()\n[time] Initiates(Flip(),F(),time).\n"
             "Happens(Flip(),2).\n");
   const auto result = cli.parallax({"traces", "m.e"});
-  check_only_error(result, "m.e:5:1-17: error[E3003]");
+  check_only_error(result, "m.e:5:1-17: error[E3004]");
   CHECK(contains(result.err, "help: No event happens at the last timepoint, 2"));
   CHECK(contains(result.err, "`range time 0 3` or --horizon 3"));
   CHECK(cli.parallax({"traces", "m.e", "--horizon", "3"}).code == 0);
