@@ -8,6 +8,7 @@
 
 #include "compiler/artifact/artifact_text.h"
 #include "compiler/artifact/section_readers.h"
+#include "compiler/artifact/stale_texts.h"
 #include "compiler/base/codes/artifacts.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/whole_number.h"
@@ -284,10 +285,13 @@ base::Result<CompiledModel> read_artifact(base::FileId file, const base::SourceF
 
 base::Result<CompiledModel> load_artifact(const std::filesystem::path& path,
                                           base::SourceFiles& files, base::DiagnosticSink& sink) {
+  files.note_input(path.string());
   auto text = base::read_file(path, sink, kMaxArtifactBytes);
   if (!text) return sink.already_reported();
-  files.note_input(path.string());
-  return read_artifact(files.add(path.string(), *std::move(text)), files, sink);
+  const auto file = files.add(path.string(), *std::move(text));
+  auto model = read_artifact(file, files, sink);
+  if (model) tell_stale_texts(*model, file, files, sink);
+  return model;
 }
 
 }  // namespace parallax::compiler

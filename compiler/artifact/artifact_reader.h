@@ -20,7 +20,8 @@ inline constexpr std::size_t kMaxArtifactBytes = std::size_t{1} << 30U;
 base::Result<CompiledModel> read_artifact(base::FileId file, const base::SourceFiles& files,
                                           base::DiagnosticSink& sink);
 
-/// Reads the file from disk and registers it under the name that the user wrote.
+/// Reads the file from disk and registers it under the name that the user wrote. Warns where the
+/// texts that it was made from have changed since (tell_stale_texts).
 base::Result<CompiledModel> load_artifact(const std::filesystem::path& path,
                                           base::SourceFiles& files, base::DiagnosticSink& sink);
 
