@@ -1,7 +1,6 @@
 #include "harness/campaign/journal.h"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -194,20 +193,10 @@ std::string without(const std::vector<SampleKey>& keys, JournalText& journal,
 
 base::Result<RunFolder> RunFolder::claim(const std::filesystem::path& path, bool resume,
                                          base::DiagnosticSink& sink) {
-  RunFolder folder;
-  folder.path_ = path;
+  auto lock = base::FolderLock::claim(path, sink);
+  if (!lock) return sink.already_reported();
+  RunFolder folder(*std::move(lock));
   std::error_code error;
-  folder.made_ = std::filesystem::create_directories(path, error);
-  if (error) {
-    return sink.error_about(codes::kFileNotWritable, path.string(), error.message());
-  }
-  folder.fd_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder.fd_ < 0 || ::flock(folder.fd_, LOCK_EX | LOCK_NB) != 0) {
-    const int why = errno;
-    folder.made_ = false;  // whoever holds it may be about to use it
-    if (why == EWOULDBLOCK) return sink.error_about(codes::kRunFolderInUse, path.string());
-    return sink.error_about(codes::kFileNotWritable, path.string(), std::strerror(why));
-  }
   const auto taken = [&](const char* name) {
     return std::filesystem::exists(std::filesystem::symlink_status(path / name, error));
   };
@@ -222,16 +211,6 @@ base::Result<RunFolder> RunFolder::claim(const std::filesystem::path& path, bool
                             "it is there already, and no run to which it belongs");
   }
   return folder;
-}
-
-RunFolder::RunFolder(RunFolder&& other) noexcept
-    : path_(std::move(other.path_)),
-      fd_(std::exchange(other.fd_, -1)),
-      made_(std::exchange(other.made_, false)) {}
-
-RunFolder::~RunFolder() {
-  if (made_) ::rmdir(path_.c_str());  // which leaves alone a folder that is not empty
-  if (fd_ >= 0) ::close(fd_);
 }
 
 base::Result<JournalText> read_journal(const std::filesystem::path& run_dir,

@@ -7,6 +7,7 @@
 
 #include "compiler/base/json.h"
 #include "harness/campaign/result_json.h"
+#include "harness/simulator/command_files.h"
 #include "harness/simulator/state_json.h"
 
 namespace parallax::harness {
@@ -238,6 +239,7 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
   header.simulator.parameters.clear();
   header.simulator.actions.clear();
   header.simulator.arguments.clear();
+  header.command_hash = hash_of_command(scenario.simulator.command);
   header.max_runs = scenario.limits.max_runs;
   header.options = recorded_options_json(scenario, options);
   header.asked = std::get<RecordedOptions>(recorded_options(header.options));
@@ -246,6 +248,7 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
 
 std::string encode(const JournalHeader& header) {
   auto out = json_of(header);
+  if (!header.command_hash.empty()) out["simulator"]["command_hash"] = header.command_hash;
   if (header.max_runs > 0) out["max_runs"] = header.max_runs;
   out["options"] = base::parse_ordered_json(header.options);
   return base::json_text(out);
@@ -351,6 +354,9 @@ std::variant<JournalHeader, ForeignLine> decode_header(std::string_view line) tr
   header.simulator.determinism = get<std::string>(simulator, "determinism");
   header.simulator.seeds = get<bool>(simulator, "seeds");
   header.simulator.timestep_s = get<double>(simulator, "timestep_s");
+  if (simulator.contains("command_hash")) {
+    header.command_hash = get<std::string>(simulator, "command_hash");
+  }
   if (object.contains("max_runs")) header.max_runs = count_of(object, "max_runs", 0);
   header.options = base::json_text(field(object, "options"));
   auto asked = recorded_options(header.options);
@@ -370,6 +376,10 @@ std::variant<TraceLine, SampleRecord, ForeignLine> decode_line(
   return ForeignLine{foreign.why};
 }
 
+bool command_changed(const JournalHeader& recorded, const std::string& command_hash) {
+  return !recorded.command_hash.empty() && recorded.command_hash != command_hash;
+}
+
 std::optional<HeaderDifference> header_difference(const JournalHeader& recorded,
                                                   const JournalHeader& now) {
   auto before = json_of(recorded);
@@ -380,6 +390,10 @@ std::optional<HeaderDifference> header_difference(const JournalHeader& recorded,
     after.erase(name);
   }
   if (auto found = differing(before, after, {})) return found;
+  if (command_changed(recorded, now.command_hash)) {
+    return HeaderDifference{"simulator's program or script", recorded.command_hash,
+                            now.command_hash};
+  }
   return differing(base::parse_json(recorded.options), base::parse_json(now.options), "options");
 }
 

@@ -26,6 +26,7 @@ struct JournalHeader {
   std::uint64_t seed = 0;
   std::string tool_version;
   SimulatorInfo simulator;    // without parameters and actions: the scenario was held against them
+  std::string command_hash;   // over the files of its command; empty: built in, or an older journal
   std::int64_t max_runs = 0;  // of a trace; 0: as the criterion needs
   std::string options;        // canonical JSON of criterion, limits without max_runs, keep_going
   RecordedOptions asked;      // the same, as it was read
@@ -54,6 +55,9 @@ std::variant<JournalHeader, ForeignLine> decode_header(std::string_view line);
 /// `symbols`: of all traces of the journal; the names of the line are added.
 std::variant<TraceLine, SampleRecord, ForeignLine> decode_line(
     std::string_view line, const std::shared_ptr<compiler::SymbolTable>& symbols);
+
+/// Has a file of the simulator's command changed since? Older journals do not tell.
+bool command_changed(const JournalHeader& recorded, const std::string& command_hash);
 
 /// The first field in which two headers differ and must not, with both values.
 struct HeaderDifference {

@@ -14,6 +14,7 @@
 #include "compiler/base/hash.h"
 #include "harness/campaign/trial.h"
 #include "harness/sampling/sampler.h"
+#include "harness/simulator/command_files.h"
 #include "runtime/replay/trace_replay.h"
 #include "tools/app/execution_check.h"
 
@@ -172,6 +173,10 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
   const auto change =
       loaded ? harness::scenario_change(header, loaded->sources_hash) : std::string();
   if (loaded && change.empty()) {
+    const auto command = harness::hash_of_command(loaded->scenario.simulator.command);
+    if (harness::command_changed(header, command)) {
+      sink.error_about(codes::kSimulatorFilesChanged, options.folder);
+    }
     if (is_recorded && path != fs::path(header.scenario)) {
       context.remark(
           fmt::format("the scenario is {}, where the run was started; --scenario names another",

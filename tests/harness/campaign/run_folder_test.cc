@@ -14,7 +14,7 @@ TEST_CASE("a folder belongs to one run at a time, and to the next when it is giv
     const auto first = RunFolder::claim(path, false, sink);
     REQUIRE(first.has_value());
     CHECK_FALSE(RunFolder::claim(path, true, sink).has_value());
-    CHECK(codes(sink) == std::vector<std::string>{"E7101"});
+    CHECK(codes(sink) == std::vector<std::string>{"E7181"});
     CHECK(std::filesystem::is_empty(path));  // no lock file
   }
   CHECK_FALSE(std::filesystem::exists(path));  // made in vain
