@@ -96,9 +96,9 @@ Status check_file(const std::filesystem::path& path, const SourceRange& place, D
 
 Result<FileId> load_text(const std::filesystem::path& path, SourceFiles& files,
                          DiagnosticSink& sink) {
+  files.note_input(path.string());  // also one that cannot be read: the answer depends on it
   auto text = read_file(path, sink);
   if (!text) return sink.already_reported();
-  files.note_input(path.string());
   return register_text(path.string(), std::move(*text), files, sink);
 }
 

@@ -48,23 +48,28 @@ bool is_too_wide(const fs::path& real, const std::vector<fs::path>& homes) {
   return std::find(homes.begin(), homes.end(), real) != homes.end();
 }
 
-/// Whoever else can write to a folder could plant a marker there.
-bool is_marked(const fs::path& folder) {
-  struct ::stat status {};
-  if (::stat(folder.c_str(), &status) != 0 || (status.st_mode & S_IWOTH) != 0) return false;
-  std::error_code error;
-  return fs::is_regular_file(fs::symlink_status(folder / kRootMarker, error));
-}
-
-/// The nearest folder above `real`, or itself, that is marked and no home.
-std::optional<fs::path> marked_root(fs::path real, const std::vector<fs::path>& homes) {
+/// The nearest folder above `real`, or itself, that is marked and no home. `look` is told every
+/// folder that was looked at.
+template <typename Look>
+std::optional<fs::path> marked_root(fs::path real, const std::vector<fs::path>& homes,
+                                    const Look& look) {
   for (; !is_too_wide(real, homes); real = real.parent_path()) {
-    if (is_marked(real)) return real;
+    look(real);
+    if (is_marked_root(real)) return real;
   }
   return std::nullopt;
 }
 
 }  // namespace
+
+bool is_marked_root(const fs::path& folder) {
+  struct ::stat status {};
+  // Whoever else can write to a folder could plant a marker there.
+  if (::stat(folder.empty() ? "." : folder.c_str(), &status) != 0) return false;
+  if ((status.st_mode & S_IWOTH) != 0) return false;
+  std::error_code error;
+  return fs::is_regular_file(fs::symlink_status(folder / kRootMarker, error));
+}
 
 namespace {
 
@@ -115,7 +120,14 @@ bool lies_below(const fs::path& path, const fs::path& folder) {
 void PathGate::admit_from(const fs::path& folder) {
   const auto homes = own_homes();
   auto real = real_path(folder);
-  if (auto root = marked_root(real, homes)) real = *std::move(root);
+  // Named from the current folder where the user did so: a checkout may lie elsewhere tomorrow.
+  const auto here = folder.is_absolute() ? fs::path() : real_path(".");
+  const auto note = [&](const fs::path& one) {
+    if (files_ == nullptr || is_open_) return;
+    const auto named = here.empty() ? one : one.lexically_relative(here);
+    files_->note_input((named / kRootMarker).lexically_normal().string());
+  };
+  if (auto root = marked_root(real, homes, note)) real = *std::move(root);
   const bool whole = !is_too_wide(real, homes);
   roots_.push_back({std::move(real), whole});
 }

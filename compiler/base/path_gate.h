@@ -17,7 +17,9 @@ inline constexpr std::string_view kRootMarker = ".parallax-root";
 /// of them only the visible files that lie directly there are admitted. docs/trust.md.
 class PathGate {
  public:
-  explicit PathGate(bool allow_outside = false) : is_open_(allow_outside) {}
+  /// `files`, if given, outlives the gate and notes every place where a marker was looked for.
+  explicit PathGate(bool allow_outside = false, SourceFiles* files = nullptr)
+      : is_open_(allow_outside), files_(files) {}
 
   /// Admits what the file may name.
   void admit_beside(const std::filesystem::path& file) { admit_from(file.parent_path()); }
@@ -40,8 +42,12 @@ class PathGate {
   };
 
   bool is_open_;
+  SourceFiles* files_;
   std::vector<Root> roots_;
 };
+
+/// Does the folder hold a marker that counts?
+bool is_marked_root(const std::filesystem::path& folder);
 
 /// Where a path really leads, links resolved as far as it exists.
 std::filesystem::path real_path(const std::filesystem::path& path);

@@ -95,7 +95,7 @@ fs::path canonical_or_empty(const fs::path& path) {
 class ModelLoader {
  public:
   ModelLoader(const LoadOptions& options, base::SourceFiles& files, base::DiagnosticSink& sink)
-      : options_(options), files_(files), sink_(sink), gate_(options.allow_outside) {
+      : options_(options), files_(files), sink_(sink), gate_(options.allow_outside, &files) {
     for (const auto& folder : options.include_dirs) gate_.admit_folder(folder);
     for (const auto& file : options.named_by) gate_.admit_beside(file);
     gate_.admit_current_folder();
@@ -189,12 +189,16 @@ class ModelLoader {
       for (const auto& include : options_.include_dirs) candidates.push_back(include / path);
       candidates.push_back(path);
     }
-    for (const auto& candidate : candidates) {
+    for (const auto& named : candidates) {
+      // One name for what is looked for, admitted and read, also where it leads through a link.
+      const auto candidate = named.lexically_normal();
+      // A file that appears here later would be loaded instead.
+      files_.note_input(candidate.string());
       std::error_code error;
       const auto status = fs::status(candidate, error);
       if (error || !fs::exists(status)) continue;
       if (!fs::is_regular_file(status)) {
-        sink_.error(codes::kLoadNotAFile, range, candidate.lexically_normal().string());
+        sink_.error(codes::kLoadNotAFile, range, candidate.string());
         unreadable_ = true;
         return true;
       }
@@ -218,11 +222,11 @@ class ModelLoader {
         return open.file == loaded->second;
       });
       if (is_open) {
-        sink_.warning(codes::kLoadCycle, range, candidate.lexically_normal().string());
+        sink_.warning(codes::kLoadCycle, range, candidate.string());
       }
       return;
     }
-    const auto file = base::load_text(candidate.lexically_normal(), files_, sink_);
+    const auto file = base::load_text(candidate, files_, sink_);
     if (!file) {
       unreadable_ = true;
       return;

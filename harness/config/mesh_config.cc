@@ -129,6 +129,7 @@ class MeshAdder {
       if (known_.size() == kMaxMeshes) {
         return fault(fmt::format("the world has more than {} meshes", kMaxMeshes));
       }
+      files_.note_input(path.string());
       if (!base::check_file(path, wanted.range, sink_)) return nullptr;
       std::error_code error;
       if (std::filesystem::file_size(path, error) > kMaxMeshBytes || error) {
@@ -137,7 +138,6 @@ class MeshAdder {
       std::ifstream in(path, std::ios::binary);
       std::ostringstream text;
       text << in.rdbuf();
-      files_.note_input(path.string());
       auto extension = path.extension().string().substr(1);
       std::transform(extension.begin(), extension.end(), extension.begin(),
                      [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });

@@ -338,21 +338,6 @@ std::vector<LocatedText> located_texts(const YamlNode& node, std::string_view ke
   return out;
 }
 
-bool may_be_case(const std::filesystem::path& path, bool allow_outside) {
-  base::SourceFiles files;
-  base::DiagnosticSink unread;
-  base::PathGate gate(allow_outside);
-  gate.admit_beside(path);
-  if (const auto root = load_yaml(path, gate, files, unread)) {
-    const auto* expect = root->find(Key::kExpect);
-    if (expect != nullptr) return expect->value.kind != YamlNode::Kind::kNull;
-    return root->find(Key::kModel) != nullptr;
-  }
-  if (files.size() == 0) return false;
-  const auto own = parse_yaml(base::FileId(0), files, unread);
-  return !own || own->find(Key::kInclude) != nullptr;
-}
-
 base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,
                                      base::DiagnosticSink& sink, bool allow_outside) {
   return load_scenario(path, files, sink, LoadLimits{allow_outside, nullptr});
@@ -361,7 +346,7 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
 base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,
                                      base::DiagnosticSink& sink, const LoadLimits& limits) {
   const auto errors_before = sink.error_count();
-  base::PathGate gate(limits.allow_outside);
+  base::PathGate gate(limits.allow_outside, &files);
   gate.admit_beside(path);
   Scenario scenario;
   scenario.file = path;
@@ -395,7 +380,7 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
 base::Result<WorldSpec> load_world(const std::filesystem::path& path, base::SourceFiles& files,
                                    base::DiagnosticSink& sink, bool allow_outside) {
   const auto errors_before = sink.error_count();
-  base::PathGate gate(allow_outside);
+  base::PathGate gate(allow_outside, &files);
   gate.admit_beside(path);
   auto world_node = load_yaml(path, gate, files, sink);
   if (!world_node) return sink.already_reported();

@@ -183,10 +183,6 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
 base::Result<WorldSpec> load_world(const std::filesystem::path& path, base::SourceFiles& files,
                                    base::DiagnosticSink& sink, bool allow_outside = false);
 
-/// May a file that does not load as a scenario be meant as a case of a suite? It is no YAML, it
-/// expects something or names a model, itself or by what it includes, or that cannot be read.
-bool may_be_case(const std::filesystem::path& path, bool allow_outside);
-
 /// Holds the scenario against the compiled model, before anything is simulated: every ground fluent
 /// needs a mapping of its arity whose region exists, whose range its joint reaches and which
 /// the built-in simulator observes, every ground

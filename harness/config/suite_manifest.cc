@@ -160,15 +160,32 @@ std::string id_problem(std::string_view id) {
   return bad == id.end() ? "" : "it has other characters than letters, digits, `_`, `-` and `.`";
 }
 
-bool looks_like_manifest(std::string_view text) {
-  return text.starts_with("cases:") || text.find("\ncases:") != std::string_view::npos;
+SuiteFileKind suite_file_kind(const std::filesystem::path& path, bool allow_outside) {
+  base::SourceFiles files;
+  base::DiagnosticSink unread;
+  base::PathGate gate(allow_outside);
+  gate.admit_beside(path);
+  if (const auto root = load_yaml(path, gate, files, unread)) {
+    if (root->find(Key::kCases) != nullptr) return SuiteFileKind::kManifest;
+    const auto* expect = root->find(Key::kExpect);
+    // An empty one takes back what an included file expects.
+    const bool is_scenario = expect != nullptr ? expect->value.kind != YamlNode::Kind::kNull
+                                               : root->find(Key::kModel) != nullptr;
+    return is_scenario ? SuiteFileKind::kScenario : SuiteFileKind::kOther;
+  }
+  if (files.size() == 0) return SuiteFileKind::kBroken;
+  // The file alone, where what it includes cannot be read.
+  const auto own = parse_yaml(base::FileId(0), files, unread);
+  if (own && own->find(Key::kCases) != nullptr) return SuiteFileKind::kManifest;
+  const bool may_be_either = !own || own->find(Key::kInclude) != nullptr;
+  return may_be_either ? SuiteFileKind::kBroken : SuiteFileKind::kOther;
 }
 
 base::Result<SuiteManifest> load_manifest(const std::filesystem::path& path,
                                           base::SourceFiles& files, base::DiagnosticSink& sink,
                                           bool allow_outside) {
   const auto errors_before = sink.error_count();
-  base::PathGate gate(allow_outside);
+  base::PathGate gate(allow_outside, &files);
   gate.admit_beside(path);
   const auto root = load_yaml(path, gate, files, sink);
   if (!root) return sink.already_reported();

@@ -42,8 +42,16 @@ struct SuiteManifest {
   std::vector<ManifestCase> cases;
 };
 
-/// Is the text a manifest: has it a key `cases` at its outermost level?
-bool looks_like_manifest(std::string_view text);
+/// What a YAML file is to a suite.
+enum class SuiteFileKind : std::uint8_t {
+  kOther,     // neither of these
+  kManifest,  // has a key `cases` at its outermost level
+  kScenario,  // expects something there, or names a model
+  kBroken,    // cannot be read, or something that it includes cannot: it may be either
+};
+/// Reads the file with all that it includes, so that it does not matter how a key is written.
+/// Nothing is reported.
+SuiteFileKind suite_file_kind(const std::filesystem::path& path, bool allow_outside);
 
 /// Reads and checks a manifest; several errors per run, each at its key. `defaults` are laid under
 /// every case. Unknown keys, unsafe and repeated ids, missing models (kFileNotFound) and cases that

@@ -281,7 +281,9 @@ class WorldImporter {
       return mesh_file(uri, from.empty() ? path : std::filesystem::path(from));
     };
     const ImportedWorld made = format_->read(input_);
-    for (const std::string& one : made.files) files_.note_input(one);
+    for (const auto* places : {&made.files, &made.absent}) {
+      for (const std::string& one : *places) files_.note_input(one);
+    }
     if (made.fault) {
       if (tell_if_stopped(input_.stop, file_range_, sink_)) return false;
       sink_.error(codes::kBadImport, range_at(made.fault->offset), made.fault->message);
@@ -394,6 +396,7 @@ class WorldImporter {
     if (!is_mesh_format(way)) return std::nullopt;
     for (const fs::path& folder : folders) {
       std::error_code error;
+      files_.note_input((folder / way).lexically_normal().string());
       if (fs::is_regular_file(folder / way, error)) return fs::absolute(folder / way).string();
     }
     return std::nullopt;

@@ -194,6 +194,7 @@ class Includer {
       : gate_(gate), files_(files), sink_(sink) {}
 
   base::Result<YamlNode> load(const std::filesystem::path& path) {
+    files_.note_input(path.string());
     // The size is checked first: the parser's time grows faster than a hostile text.
     const auto text = base::read_file(path, sink_, kMaxYamlBytes);
     if (!text) return sink_.already_reported();
@@ -272,6 +273,7 @@ class Includer {
     if (std::find(open_.begin(), open_.end(), real(path)) != open_.end()) {
       return sink_.error(codes::kIncludeCycle, name.range, name.text);
     }
+    files_.note_input(path.string());
     if (!base::check_file(path, name.range, sink_)) return sink_.already_reported();
     auto root = load(path);
     if (root && !root->is_map()) {

@@ -66,7 +66,8 @@ struct ImportedWorld {
   std::string floor_material;  // if the file has a floor
   std::optional<double> gravity_m_s2;
   std::vector<LeftOut> left_out;
-  std::vector<std::string> files;  // that were read besides
+  std::vector<std::string> files;        // that were read besides
+  std::vector<std::string> absent = {};  // places where one was looked for in vain
 };
 
 /// Was the library that reads the format there when this was built?

@@ -381,6 +381,7 @@ ImportedWorld import_mjcf(const ImportInput& input) {
   }
   MjcfText text = vetted_mjcf(input);
   world.files = text.read;
+  world.absent = text.absent;
   world.fault = text.fault;
   if (world.fault) return world;
   const MjcfModel model = read_mjcf(text.files, input.stop);

@@ -86,7 +86,10 @@ class FileShelf {
       std::error_code error;
       const fs::path path = folder / way;
       if (leads_through_link(folder, path)) return fault("leads through a link");
-      if (!fs::exists(fs::symlink_status(path, error))) continue;
+      if (!fs::exists(fs::symlink_status(path, error))) {
+        absent_.insert(path.lexically_normal().string());
+        continue;
+      }
       if (input_.admits && !input_.admits(path)) return fault("lies where no file may be named");
       out.fault = read_bounded(path, most_bytes, out.bytes);
       out.path = path.lexically_normal().string();
@@ -96,11 +99,12 @@ class FileShelf {
     return fault("is neither beside the description nor in a folder of `models`");
   }
   std::vector<std::string> files() const { return {read_.begin(), read_.end()}; }
+  std::vector<std::string> absent() const { return {absent_.begin(), absent_.end()}; }
 
  private:
   const ImportInput& input_;
   std::vector<fs::path> folders_;
-  std::set<std::string> read_;
+  std::set<std::string> read_, absent_;
 };
 
 /// Puts what is included in the place of what includes it.
@@ -401,6 +405,7 @@ MjcfText vetted_mjcf(const ImportInput& input) {
   Includer(shelf, out).run(input.text);
   if (!out.fault) FileNamer(shelf, out).run();
   out.read = shelf.files();
+  out.absent = shelf.absent();
   return out;
 }
 

@@ -18,10 +18,11 @@ namespace parallax::harness {
 /// fields are replaced by what does the same in a simulation, or taken out; their files are not
 /// opened.
 struct MjcfText {
-  std::optional<TextFault> fault;  // then the rest says nothing
-  std::vector<MjcfFile> files;     // the text, then the meshes
-  std::vector<LeftOut> left_out;   // of what was replaced or taken out
-  std::vector<std::string> read;   // paths of files that were opened
+  std::optional<TextFault> fault;   // then the rest says nothing
+  std::vector<MjcfFile> files;      // the text, then the meshes
+  std::vector<LeftOut> left_out;    // of what was replaced or taken out
+  std::vector<std::string> read;    // paths of files that were opened
+  std::vector<std::string> absent;  // paths where a file was looked for in vain
 
   /// Where in ImportInput::text that is, or is included; then `inside` says where there, as "in
   /// `parts/arm.xml`, line 3: ".

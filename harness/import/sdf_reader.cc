@@ -68,6 +68,7 @@ class IncludeGate {
     return check(outline, around);
   }
   std::vector<std::string> files() const { return {files_.begin(), files_.end()}; }
+  std::vector<std::string> absent() const { return {absent_.begin(), absent_.end()}; }
 
  private:
   std::optional<TextFault> check(const XmlOutline& outline, std::vector<std::string>& around) {
@@ -97,9 +98,9 @@ class IncludeGate {
     }
     const std::string name = uri.substr(kScheme.size());
     for (const fs::path& folder : folders_) {
-      std::error_code error;
       const fs::path there = folder / name;
-      if (!fs::exists(fs::symlink_status(there, error))) continue;
+      if (!exists(there)) continue;
+      std::error_code error;
       if (leads_through_link(folder, there)) return fmt::format("`{}` leads through a link", shown);
       return fs::is_directory(there, error) ? check_folder(there, shown, around)
                                             : check_file(there, shown, around);
@@ -111,8 +112,7 @@ class IncludeGate {
                                           std::vector<std::string>& around) {
     for (const char* const name : {"model.config", "manifest.xml"}) {
       const fs::path manifest = folder / name;
-      std::error_code error;
-      if (!fs::exists(fs::symlink_status(manifest, error))) continue;
+      if (!exists(manifest)) continue;
       std::string text;
       if (auto message = read(manifest, text)) return message;
       const XmlOutline outline = outline_of(text);
@@ -153,6 +153,13 @@ class IncludeGate {
     return std::nullopt;
   }
 
+  bool exists(const fs::path& path) {
+    std::error_code error;
+    if (fs::exists(fs::symlink_status(path, error))) return true;
+    absent_.insert(path.lexically_normal().string());
+    return false;
+  }
+
   std::optional<std::string> read(const fs::path& path, std::string& text) {
     if (auto message = read_bounded(path, kMaxImportBytes, text)) return message;
     files_.insert(path.string());
@@ -160,7 +167,7 @@ class IncludeGate {
   }
 
   const std::vector<fs::path>& folders_;
-  std::set<std::string> files_;
+  std::set<std::string> files_, absent_;
   std::size_t followed_ = 0, elements_ = 0, parts_ = 0;  // of all files together
 };
 
@@ -429,6 +436,7 @@ extern "C" __attribute__((visibility("default"))) bool parallax_read_sdf(const c
   IncludeGate gate(input.folders);
   world.fault = gate.check(outline);
   world.files = gate.files();
+  world.absent = gate.absent();
   if (world.fault) return true;
   SdfReader(input, outline, world).run();
   return true;

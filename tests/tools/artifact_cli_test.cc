@@ -129,6 +129,72 @@ TEST_CASE("a compiled model refuses what belongs to its compilation") {
   CHECK(damaged.err.find("short.dec.cnf:") != std::string::npos);
 }
 
+TEST_CASE("a compiled model that is older than its texts is told wherever one is read") {
+  const CliFixture cli;
+  cli.write("part.e", "event Kick()\n");
+  cli.write("lamps.e", std::string(kLamps) + "load part.e\n");
+  std::filesystem::create_directory(cli.folder() / "sub");
+  REQUIRE(cli.parallax({"compile", "lamps.e", "-o", "m.dec.cnf"}).code == 0);
+  const auto told = [&](const std::vector<std::string>& arguments, const std::string& what) {
+    const auto result = cli.parallax(arguments);
+    CAPTURE(arguments.front());
+    CHECK_MESSAGE((result.err.find("W6080") != std::string::npos) == !what.empty(), result.err);
+    CHECK(result.err.find(what) != std::string::npos);
+  };
+  const std::vector<std::vector<std::string>> readers = {
+      {"traces", "m.dec.cnf", "--count"}, {"check", "m.dec.cnf"},
+      {"explain", "m.dec.cnf"},           {"consequences", "m.dec.cnf"},
+      {"diff", "m.dec.cnf", "m.dec.cnf"}, {"diff", "lamps.e", "m.dec.cnf"}};
+  for (const auto& reader : readers) told(reader, "");
+  cli.write("part.e", "event Kick()\nevent Push()\n");
+  for (const auto& reader : readers) told(reader, "the text `part.e` has changed");
+  std::filesystem::remove(cli.folder() / "part.e");
+  told(readers.front(), "the text `part.e` was removed");
+  // A byte order mark is no part of the text, and the names start beside the compiled model, too.
+  cli.write("part.e",
+            "\xEF\xBB\xBF"
+            "event Kick()\n");
+  told(readers.front(), "");
+  for (const auto* name : {"m.dec.cnf", "lamps.e", "part.e"}) {
+    std::filesystem::rename(cli.folder() / name, cli.folder() / "sub" / name);
+  }
+  told({"traces", "sub/m.dec.cnf"}, "");
+  cli.write("sub/lamps.e", kLamps);
+  told({"traces", "sub/m.dec.cnf"}, "the text `lamps.e` has changed");
+  // Without its texts it stands alone.
+  std::filesystem::remove(cli.folder() / "sub/lamps.e");
+  std::filesystem::remove(cli.folder() / "sub/part.e");
+  told({"traces", "sub/m.dec.cnf"}, "");
+}
+
+TEST_CASE("a scenario, its compiled model and a case of a suite have the same number of traces") {
+  const CliFixture cli;
+  const std::vector<std::string> constraints = {
+      "HoldsAt(Holding(),time)", "HoldsAt(BoxIn(r1),time)", "HoldsAt(RobotIn(r1),time)",
+      "HoldsAt(BoxIn(r2),time) & HoldsAt(RobotIn(r2),time)"};
+  for (const auto& constraint : constraints) {
+    CAPTURE(constraint);
+    cli.write("cut.yaml",
+              "include: common.yaml\nmodel: [domain.e, start.e]\nhorizon: 2\nconstraints: ['" +
+                  constraint + "']\n");
+    const auto count = cli.parallax({"traces", "cut.yaml", "--count"}).out;
+    REQUIRE_FALSE(count.empty());
+    REQUIRE(cli.parallax({"compile", "cut.yaml", "-o", "cut.dec.cnf"}).code == 0);
+    CHECK(cli.parallax({"traces", "cut.dec.cnf", "--count"}).out == count);
+    const auto number = count.substr(0, count.find('\n'));
+    cli.write("suite.yaml", "cases:\n  - {id: a, model: cut.yaml, expect: {traces: " + number +
+                                "}}\n  - {id: b, model: cut.dec.cnf, expect: {traces: " + number +
+                                "}}\n");
+    CHECK(cli.parallax({"suite", "suite.yaml", "--no-cache"}).code == 0);
+    const auto listed = cli.parallax({"traces", "cut.yaml", "--limit", "0"}).out;
+    CHECK(listed.find('\n' + number + " trace") != std::string::npos);
+  }
+  // Constraints that would not count are refused.
+  const auto until = cli.parallax({"traces", "cut.yaml", "--until", "HoldsAt(Holding(),time)"});
+  CHECK(until.code == 2);
+  CHECK(until.err.find("--until is for models") != std::string::npos);
+}
+
 TEST_CASE("a stranger's reader and another solver agree with us") {
   if (!minisat_is_installed()) {
     MESSAGE("SKIPPED: minisat is not installed");

@@ -10,6 +10,10 @@
 namespace parallax::test {
 namespace {
 
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
 using Json = nlohmann::json;
 
 /// A world of words behind the protocol: what is picked up at 1.75 slips.
@@ -57,6 +61,60 @@ TEST_CASE("a known probability under a law is met through the protocol") {
   CHECK(law["refused_share"].get<double>() == doctest::Approx(1.0 / 3.0).epsilon(0.3));
   CHECK(law["conditions"][0]["condition"] == "box.x < 1.8 and robot.x > 0");
   CHECK(law["words"][0] == "box.x 1.25 (50 %) or 1.75 (16.67 %) or 1.9 (33.33 %)");
+}
+
+TEST_CASE("a simulator whose script has changed goes on with no run, and replay tells it") {
+  const CliFixture cli;
+  cli.write("words.sh", kWords);
+  cli.write("other.yaml", "include: scenario.yaml\nsimulator: {command: [sh, words.sh]}\n");
+  const auto run =
+      cli.parallax({"run", "other.yaml", "--allow-commands", "--max-runs", "2", "--out", "one"});
+  CAPTURE(run.err);
+  REQUIRE(run.code == 4);
+  const std::vector<std::string> replay = {"replay", "one", "--sample", "1.1", "--allow-commands"};
+  const std::vector<std::string> resume = {
+      "run", "other.yaml", "--allow-commands", "--max-runs", "3", "--resume", "--out", "one"};
+  auto replayed = cli.parallax(replay);
+  CHECK(replayed.code == 0);
+  CHECK_FALSE(holds(replayed.err, "W7180"));
+  cli.write("words.sh", std::string(kWords) + "# another version\n");
+  replayed = cli.parallax(replay);
+  CHECK(replayed.code == 0);
+  CHECK(holds(replayed.err, "W7180"));
+  const auto refused = cli.parallax(resume);
+  CHECK(refused.code == 3);
+  CHECK_MESSAGE(holds(refused.err, "its simulator's program or script is"), refused.err);
+  cli.write("words.sh", kWords);
+  CHECK(cli.parallax(resume).code == 4);
+}
+
+TEST_CASE("a result of a suite is not taken over when the script of its simulator has changed") {
+  const CliFixture cli;
+  cli.write("words.sh", kWords);
+  const auto scenario = cli.read("scenario.yaml");
+  cli.write("other.yaml", scenario.substr(0, scenario.find("expect:")) +
+                              "simulator: {command: [sh, words.sh]}\nlimits: {max_runs: 2}\n"
+                              "expect: {verdict: inconclusive}\n");
+  const std::vector<std::string> suite = {"suite", "other.yaml", "--allow-commands", "--no-cache"};
+  auto resumed = suite;
+  resumed.emplace_back("--resume");
+  REQUIRE(cli.parallax(suite).code == 0);
+  CHECK(json_of(cli, resumed)["reused"] == 1);
+  cli.write("words.sh", std::string(kWords) + "# another version\n");
+  CHECK(json_of(cli, resumed)["reused"] == 0);
+  // Without an expected verdict it is no pass.
+  cli.replace("other.yaml", "verdict: inconclusive", "max_simulations: 5");
+  auto reported = suite;
+  reported.insert(reported.end(), {"--junit", "r.xml", "--markdown", "r.md"});
+  const auto open = cli.parallax(reported);
+  CHECK(open.code == 4);
+  CHECK(open.out == "0 passed, 0 failed, 1 inconclusive\n");
+  CHECK(holds(open.err, "OPEN  other.yaml"));
+  CHECK(holds(cli.read("r.xml"), "errors=\"1\""));
+  CHECK(holds(cli.read("r.xml"), "type=\"inconclusive\""));
+  CHECK(holds(cli.read("r.md"), "| inconclusive |"));
+  CHECK(json_of(cli, suite, 4)["inconclusive"] == 1);
+  CHECK(holds(cli.read("out/suite/results.json"), "\"outcome\": \"inconclusive\""));
 }
 
 constexpr const char* kEdgeLaw =

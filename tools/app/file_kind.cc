@@ -7,6 +7,7 @@
 
 #include "compiler/base/codes/files.h"
 #include "harness/campaign/journal.h"
+#include "harness/config/suite_manifest.h"
 
 namespace parallax::tools {
 namespace {
@@ -123,8 +124,10 @@ FileKind file_kind(const std::string& path) {
     return path.ends_with(ending.text);
   });
   if (found == kEndings.end()) return FileKind::kUnknown;
-  const bool has_cases = begin.starts_with("cases:") || begin.find("\ncases:") != std::string::npos;
-  return found->kind == FileKind::kScenario && has_cases ? FileKind::kManifest : found->kind;
+  if (found->kind != FileKind::kScenario) return found->kind;
+  const bool is_manifest =
+      harness::suite_file_kind(path, false) == harness::SuiteFileKind::kManifest;
+  return is_manifest ? FileKind::kManifest : found->kind;
 }
 
 base::Status expect_kind(const std::string& path, std::initializer_list<FileKind> kinds,

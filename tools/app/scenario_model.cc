@@ -17,6 +17,7 @@
 #include "harness/campaign/replay.h"
 #include "harness/config/load_limits.h"
 #include "harness/discrete/model_simulator.h"
+#include "harness/simulator/command_files.h"
 #include "tools/app/edited_scenario.h"
 #include "tools/app/file_kind.h"
 #include "tools/app/start_weights.h"
@@ -132,7 +133,7 @@ compiler::ConstraintText constraint_text(const harness::LocatedText& text,
 
 base::Result<std::vector<base::FileId>> load_scenario_plan(const harness::Scenario& scenario,
                                                            Context& context) {
-  base::PathGate gate(context.form().allow_outside);
+  base::PathGate gate(context.form().allow_outside, &context.files());
   gate.admit_beside(scenario.file);
   std::vector<compiler::PlanPath> paths;
   for (const auto& plan : scenario.plan) paths.push_back({plan.text, plan.source});
@@ -197,6 +198,14 @@ std::vector<harness::GroundFluent> ground_fluents(const std::vector<std::string>
   return out;
 }
 
+/// Notes the files that the simulator's command names: another program may answer otherwise.
+void note_command(const std::vector<std::string>& command, base::SourceFiles& files) {
+  const auto named = harness::files_of_command(command);
+  for (const auto* places : {&named.found, &named.absent}) {
+    for (const auto& place : *places) files.note_input(place);
+  }
+}
+
 /// A plan that is executed goes on to its end, whatever holds on its way.
 void execute(const harness::Scenario& scenario, compiler::CompileInput& input) {
   input.plan->failures_by_reason = true;
@@ -219,6 +228,7 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
                              harness::LoadLimits{context.form().allow_outside, &context.stop()});
   if (!scenario) return sink.already_reported();
   auto scenario_hash = harness::hash_of_sources(context.files(), first);
+  note_command(scenario->simulator.command, context.files());
   const RegionLocator locator(scenario->mapping->regions());
   auto input = compile_input(*scenario, locator, context);
   if (!input) return sink.already_reported();
@@ -301,7 +311,7 @@ base::Status add_plan(const ModelOptions& options, std::optional<harness::Scenar
   }
   locator.emplace(regions ? regions->mapping->regions() : kNowhere);
   std::vector<compiler::PlanPath> paths;
-  base::PathGate gate(context.form().allow_outside);
+  base::PathGate gate(context.form().allow_outside, &context.files());
   for (const auto& path : options.plan) {
     paths.push_back({path, std::nullopt});
     std::error_code error;
@@ -359,6 +369,11 @@ base::Result<compiler::Compilation> compile(const ModelOptions& options, Context
     return compiled;
   }
   if (options.models.size() == 1 && (first.ends_with(".yaml") || first.ends_with(".yml"))) {
+    if (!options.until.empty()) {
+      return context.sink().error_about(
+          codes::kUsage, first,
+          "the `constraints` of a scenario say where its traces end: --until is for models");
+    }
     auto loaded = load(first, context, switches, options.property, options.minimize, options.best);
     if (!loaded) return context.sink().already_reported();
     return std::move(loaded->compilation);

@@ -95,16 +95,22 @@ void Invocation::print_diagnostics(const std::vector<base::Diagnostic>& diagnost
   if (!options_.quiet) rest(sink().warning_count(), "warnings are");
 }
 
-/// What was read and how much memory it took, for who wants to know when the answer may change.
+/// Writes which files were read, where others were looked for in vain, and the memory it took.
 void Invocation::write_footprint() {
   if (options_.footprint.empty()) return;
-  const std::set<std::string> inputs(files().inputs().begin(), files().inputs().end());
+  std::set<std::string> inputs, absent;
+  for (const auto& input : files().inputs()) {
+    std::error_code error;
+    const bool is_there = std::filesystem::exists(input, error);
+    (is_there ? inputs : absent).insert(input);
+  }
   rusage own{}, children{};
   ::getrusage(RUSAGE_SELF, &own);
   ::getrusage(RUSAGE_CHILDREN, &children);
   const nlohmann::json json = {
       {"schema_version", 1},
       {"inputs", inputs},
+      {"absent", absent},
       {"peak_memory_mb", (own.ru_maxrss + children.ru_maxrss + 1023) / 1024}};
   (void)base::write_output(options_.footprint, base::json_text(json) + '\n', files(), sink());
 }

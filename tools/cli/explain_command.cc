@@ -33,8 +33,13 @@ struct ExplainOptions {
 /// large for that, as it is solved.
 std::optional<compiler::CompiledModel> compile(const ExplainOptions& options,
                                                Invocation& invocation) {
+  if (names_artifact(options.model)) {  // what it says was settled when it was compiled
+    auto compiled = compile_models(options.model, invocation);
+    return compiled ? std::optional(std::move(compiled->model)) : std::nullopt;
+  }
   Invocation attempt(invocation.options());
   auto compiled = compile_plain_models(options.model, attempt);
+  for (const auto& input : attempt.files().inputs()) invocation.files().note_input(input);
   if (compiled) return std::move(compiled->model);
   auto usual = compile_models(options.model, invocation);
   if (!usual) return std::nullopt;

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "compiler/base/codes/files.h"
+#include "compiler/base/folder_lock.h"
 #include "compiler/base/write_gate.h"
 #include "tools/cli/suite_history_option.h"
 #include "tools/cli/suite_output.h"
@@ -14,6 +15,8 @@ namespace parallax::tools {
 int merge_shards(const SuiteOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto quarantine = quarantine_of(options, invocation);
+  const auto lock = base::FolderLock::claim(options.out, sink);
+  if (!lock) return 0;
   auto merged = merge_suites(options.merge, sink);
   if (!quarantine || !merged || !may_write(options, invocation) ||
       !may_append(options, invocation)) {
@@ -38,6 +41,10 @@ int merge_shards(const SuiteOptions& options, Invocation& invocation) {
       invocation.remark(line_of(record.cases()[i], result));
     }
     record.finish(i, std::move(merged->results[i]));
+  }
+  for (const auto& folder : merged->lost) {
+    invocation.remark(fmt::format("{} has no results that can be read",
+                                  (std::filesystem::path(folder) / kResultsFile).string()));
   }
   for (const auto& shard : merged->missing) {
     invocation.remark(fmt::format("shard {0} is missing: run it with --shard {0} and merge again",

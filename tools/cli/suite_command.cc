@@ -4,6 +4,7 @@
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
+#include "compiler/base/folder_lock.h"
 #include "compiler/base/write_gate.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
@@ -19,6 +20,7 @@
 #include "tools/suite/suite_loop.h"
 #include "tools/suite/suite_record.h"
 #include "tools/suite/suite_summary.h"
+#include "tools/suite/unused_goldens.h"
 
 namespace parallax::tools {
 namespace {
@@ -31,7 +33,8 @@ std::string environment(const std::string& name) {
 /// Expectations of models bring a limit of their own; scenarios say that they are fast.
 bool is_fast(const SuiteCase& one) {
   const auto* scenario = std::get_if<harness::Expectation>(&one.check);
-  return scenario == nullptr || scenario->fast;
+  // Nobody knows what a scenario that cannot be read would have said.
+  return scenario == nullptr || scenario->fast || one.is_broken;
 }
 
 /// The cases that are asked for; those that passed last time leave under --rerun-failed.
@@ -41,6 +44,9 @@ base::Result<std::vector<SuiteCase>> wanted_cases(const SuiteOptions& options,
   auto cases = find_cases(options.paths, invocation.form().allow_outside, invocation.files(),
                           invocation.sink());
   if (!cases) return invocation.sink().already_reported();
+  for (const auto& file : unused_goldens(options.paths, *cases, options.out)) {
+    invocation.remark(fmt::format("{} is a golden file of no case", file));
+  }
   std::erase_if(*cases, [&](const SuiteCase& one) {
     return one.name().find(options.only) == std::string::npos || (options.fast && !is_fast(one));
   });
@@ -168,6 +174,8 @@ int score_mutants(const SuiteOptions& options, Invocation& invocation) {
                                   "--out: this is no folder, and none can be made here");
     return 0;
   }
+  const auto lock = base::FolderLock::claim(options.out, invocation.sink());
+  if (!lock) return 0;
   const ResultCache cache(cache_folder(options),
                           {program_hash(), options.seed, invocation.form().allow_outside});
   MutationOptions score;
@@ -216,6 +224,12 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
   if (!fleet_of(options.launcher, options.jobs, invocation)) return 0;
   const auto shard = chosen_shard(options.shard, environment, sink);
   if (!shard) return 0;
+  if (!parse_shard(options.shard)) {
+    invocation.remark(
+        fmt::format("--shard {}: this is shard {}", options.shard, to_string(*shard)));
+  }
+  const auto lock = base::FolderLock::claim(options.out, sink);
+  if (!lock) return 0;
   const SuiteIdentity identity{
       kVersion,     program_hash(),         options.seed,
       *shard,       options.paths,          options.only,

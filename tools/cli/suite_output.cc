@@ -69,7 +69,8 @@ int conclude(SuiteRecord& record, const SuiteOptions& options, Invocation& invoc
     invocation.result(summary_text(record));
   }
   if (record.count(Outcome::kFailed) + record.count(Outcome::kError) > 0) return 1;
-  return saved && record.count(Outcome::kNotFinished) > 0 ? 4 : 0;
+  const auto open = record.count(Outcome::kNotFinished) + record.count(Outcome::kInconclusive);
+  return saved && open > 0 ? 4 : 0;
 }
 
 base::Result<harness::Quarantine> quarantine_of(const SuiteOptions& options,

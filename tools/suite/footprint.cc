@@ -56,6 +56,13 @@ void Footprint::add(const base::Captured& child) {
   for (const auto& path : *inputs) {
     if (path.is_string()) inputs_.insert(path.get<std::string>());
   }
+  if (const auto* absent = base::json_member(json, "absent"); absent != nullptr) {
+    for (const auto& path : *absent) {
+      if (!path.is_string()) continue;
+      inputs_.insert(path.get<std::string>());
+      absent_.insert(path.get<std::string>());
+    }
+  }
   const auto* memory = base::json_member(json, "peak_memory_mb");
   if (memory == nullptr) return;
   const auto peak = base::json_as<std::int64_t>(*memory).value_or(0);
@@ -78,7 +85,8 @@ void Footprint::into(CaseResult& result) const {
       result.repeatable = false;
       return;
     }
-    inputs.push_back({path, hashes.of(path)});
+    // One that has appeared since, with an older time, was not read.
+    inputs.push_back({path, absent_.contains(path) ? std::string() : hashes.of(path)});
   }
   result.inputs = std::move(inputs);
 }

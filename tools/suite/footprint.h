@@ -26,6 +26,7 @@ class Footprint {
   void add(const base::Captured& child);
   /// A file that the suite itself looks at.
   void add_input(const std::string& path) { inputs_.insert(path); }
+  /// Where a file lies that was read, or would have been.
   const std::set<std::string>& inputs() const { return inputs_; }
   /// Notes all of it in the result. No inputs are noted where one has changed since the beginning:
   /// nobody knows what was read then.
@@ -35,6 +36,7 @@ class Footprint {
   std::filesystem::path out_, file_;
   std::filesystem::file_time_type begin_;
   std::set<std::string> inputs_;
+  std::set<std::string> absent_;  // of them, those that a process looked for in vain
   std::string answers_;
   std::int64_t peak_memory_mb_ = 0;
   bool complete_ = true;  // every process said what it read

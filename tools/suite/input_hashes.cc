@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "compiler/base/file_io.h"
+#include "compiler/base/path_gate.h"
 #include "compiler/base/sha256.h"
 
 namespace parallax::tools {
@@ -27,12 +28,31 @@ std::string hash_of_folder(const fs::path& path) {
   return base::sha256_hex(text);
 }
 
-std::string hash_of_path(const std::string& path) {
+std::string hash_of_content(const fs::path& path) {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 31U;  // more than any reader takes
   std::error_code error;
+  if (!fs::exists(path, error)) return {};
   if (fs::is_directory(path, error)) return hash_of_folder(path);
   base::DiagnosticSink unread;
-  const auto text = base::read_file(path, unread);
-  return text ? base::sha256_hex(*text) : "";
+  const auto text = base::read_file(path, unread, kMostBytes);
+  return base::sha256_hex(text ? *text : "unreadable");
+}
+
+/// Where the path leads by links, from its folder; empty: through none.
+std::string way_of_links(const fs::path& path) {
+  std::error_code error;
+  const auto named = fs::absolute(path, error).lexically_normal();
+  const auto real = base::real_path(path);
+  return real == named ? std::string() : real.lexically_relative(named.parent_path()).string();
+}
+
+std::string hash_of_path(const fs::path& path) {
+  const auto folder = path.parent_path();
+  if (path.filename() == base::kRootMarker && !base::is_marked_root(folder)) return {};
+  auto out = hash_of_content(path);
+  if (out.empty()) return out;
+  if (const auto way = way_of_links(path); !way.empty()) out += " by " + way;
+  return out;
 }
 
 int add_library(dl_phdr_info* info, std::size_t /*size*/, void* paths) {
@@ -60,8 +80,8 @@ const std::string& program_hash() {
     std::vector<std::string> paths;
     ::dl_iterate_phdr(add_library, &paths);
     std::sort(paths.begin(), paths.end());
-    std::string all = hash_of_path("/proc/self/exe");
-    for (const auto& path : paths) all += hash_of_path(path);
+    std::string all = hash_of_content("/proc/self/exe");
+    for (const auto& path : paths) all += hash_of_content(path);
     return base::sha256_hex(all);
   }();
   return hash;

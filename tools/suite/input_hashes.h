@@ -11,7 +11,9 @@ namespace parallax::tools {
 /// Hashes of files and folders as they are now, each looked at once. Not thread-safe.
 class InputHashes {
  public:
-  /// SHA-256 of a file's bytes; of a folder, of its sorted entries' names; empty: neither.
+  /// SHA-256 of a file's bytes; of a folder, of its sorted entries' names; of a marker of a root
+  /// that does not count, and where nothing is: empty. Where links lead elsewhere follows the
+  /// digits, as links may be refused.
   const std::string& of(const std::string& path);
   /// Are these files all as they were?
   bool unchanged(const std::vector<InputFile>& inputs);

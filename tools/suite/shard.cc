@@ -50,6 +50,11 @@ base::Result<Shard> from_slurm(const Environment& environment, base::DiagnosticS
   if (highest && (*highest < lowest || (*highest - lowest) / step + 1 != *count)) {
     return wrong(" belongs to an array with gaps; number the tasks one after the other");
   }
+  if (*count == 1 && *id > 1) {
+    return wrong(
+        " is the only one of its array, so nothing tells of how many parts it is one; say it, as "
+        "--shard I/N");
+  }
   return Shard{(*id - lowest) / step + 1, *count};
 }
 

@@ -3,14 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <tuple>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
 #include "compiler/base/codes/texts.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/path_gate.h"
+#include "compiler/base/sha256.h"
+#include "compiler/base/utf8.h"
+#include "tools/suite/input_hashes.h"
+#include "tools/suite/result_cache.h"
 
 namespace parallax::tools {
 
@@ -19,7 +25,9 @@ namespace fs = std::filesystem;
 namespace {
 
 bool is_yaml(const fs::path& path) {
-  return path.extension() == ".yaml" || path.extension() == ".yml";
+  auto ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), base::to_lower);
+  return ending == ".yaml" || ending == ".yml";
 }
 
 /// The YAML files below the paths. Links to files are followed, unless they lead out of the folder
@@ -97,9 +105,23 @@ class YamlFinder {
   std::vector<std::string> files_;
 };
 
-/// Has the text a key `expect` at its outermost level?
-bool says_what_it_expects(std::string_view text) {
-  return text.starts_with("expect:") || text.find("\nexpect:") != std::string_view::npos;
+/// Can a text that is too large for a parser hold a case, however it is written? A backslash may
+/// hide a key, `include` may bring one.
+bool may_hold_case(std::string_view text) {
+  constexpr std::array<std::string_view, 5> kSigns = {"cases", "expect", "model", "include", "\\"};
+  return std::any_of(kSigns.begin(), kSigns.end(), [&](std::string_view sign) {
+    return text.find(sign) != std::string_view::npos;
+  });
+}
+
+/// Why the bytes are no text; empty: they are one.
+std::string_view no_text(std::string_view bytes) {
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+    return "it is UTF-16 or UTF-32, not UTF-8";
+  }
+  const bool is_text =
+      bytes.find('\0') == std::string_view::npos && base::first_invalid_utf8(bytes) == bytes.size();
+  return is_text ? "" : "it is no text in UTF-8";
 }
 
 /// Says what was read, or will be by the processes of the cases.
@@ -107,31 +129,54 @@ void note_inputs(const std::vector<std::string>& inputs, base::SourceFiles& file
   for (const auto& input : inputs) files.note_input(input);
 }
 
-void add_scenario(const std::string& file, std::string_view text, bool allow_outside,
-                  std::vector<SuiteCase>& cases, base::SourceFiles& files) {
+/// Hash of a case's definition and the contents of files, wherever the checkout lies.
+std::string revision_of(const SuiteCase& one, const std::vector<std::string>& paths,
+                        InputHashes& hashes) {
+  std::vector<std::string> contents;
+  for (const auto& path : paths) {
+    const bool is_marker = fs::path(path).filename() == base::kRootMarker;
+    if (!is_marker) contents.push_back(hashes.of(path));
+  }
+  std::sort(contents.begin(), contents.end());
+  contents.erase(std::unique(contents.begin(), contents.end()), contents.end());
+  auto all = case_definition(one, CaseKey{});
+  for (const auto& content : contents) all += content + '\n';
+  return base::sha256_hex(all);
+}
+
+void add_scenario(const std::string& file, harness::SuiteFileKind kind, bool allow_outside,
+                  std::vector<SuiteCase>& cases, InputHashes& hashes, base::SourceFiles& files) {
   base::SourceFiles own;
   base::DiagnosticSink unread;  // the run of the case will say it
   const auto scenario = harness::load_scenario(file, own, unread, allow_outside);
   note_inputs(own.inputs(), files);
   const auto folder = fs::path(file).parent_path();
   const auto group = folder.empty() ? std::string(".") : folder.generic_string();
-  if (scenario && scenario->expect) {
-    cases.push_back({file, file, group, *scenario->expect, scenario->simulator.command});
-  } else if (!scenario &&
-             (says_what_it_expects(text) || harness::may_be_case(file, allow_outside))) {
-    cases.push_back({file, file, group, harness::Expectation{}});
+  SuiteCase out{file, file, group, harness::Expectation{}};
+  if (scenario) {
+    if (!scenario->expect) return;
+    out.check = *scenario->expect;
+    out.command = scenario->simulator.command;
+  } else {
+    if (kind == harness::SuiteFileKind::kOther) return;
+    out.is_broken = true;
   }
+  out.revision = revision_of(out, own.inputs(), hashes);
+  cases.push_back(std::move(out));
 }
 
 void add_manifest(const std::string& file, bool allow_outside, std::vector<SuiteCase>& cases,
-                  base::SourceFiles& files, base::DiagnosticSink& sink) {
+                  InputHashes& hashes, base::SourceFiles& files, base::DiagnosticSink& sink) {
   auto manifest = harness::load_manifest(file, files, sink, allow_outside);
   if (!manifest) return;
   for (auto& one : manifest->cases) {
-    for (const auto& model : one.models) files.note_input(model.text);
-    if (one.expect.golden) files.note_input(one.expect.golden->text);
+    std::vector<std::string> named;
+    for (const auto& model : one.models) named.push_back(model.text);
+    if (one.expect.golden) named.push_back(one.expect.golden->text);
+    note_inputs(named, files);
     auto id = one.id;
     cases.push_back({file, std::move(id), file, std::move(one)});
+    cases.back().revision = revision_of(cases.back(), named, hashes);
   }
 }
 
@@ -151,6 +196,8 @@ std::string_view to_string(Outcome outcome) {
       return "failed";
     case Outcome::kError:
       return "error";
+    case Outcome::kInconclusive:
+      return "inconclusive";
     case Outcome::kNotFinished:
       return "not finished";
     case Outcome::kSkipped:
@@ -167,18 +214,26 @@ base::Result<std::vector<SuiteCase>> find_cases(const std::vector<std::string>& 
     sink.error_about(codes::kCaseUnreadable, file, why);
   };
   std::vector<SuiteCase> cases;
+  InputHashes hashes;
   for (const auto& file : YamlFinder(allow_outside, sink).find(paths)) {
     base::DiagnosticSink unread;
     const auto text = base::read_file(file, unread);
     if (!text) {
       unreadable(file, first_message(unread));
+    } else if (const auto why = no_text(*text); !why.empty()) {
+      unreadable(file, std::string(why));
     } else if (text->size() > harness::kMaxScenarioBytes) {
-      if (!harness::looks_like_manifest(*text) && !says_what_it_expects(*text)) continue;
+      if (!may_hold_case(*text)) continue;
       unreadable(file, fmt::format("it is larger than {} bytes", harness::kMaxScenarioBytes));
-    } else if (harness::looks_like_manifest(*text)) {
-      add_manifest(file, allow_outside, cases, files, sink);
     } else {
-      add_scenario(file, *text, allow_outside, cases, files);
+      const auto kind = harness::suite_file_kind(file, allow_outside);
+      const bool broken_manifest =
+          kind == harness::SuiteFileKind::kBroken && text->find("cases") != std::string::npos;
+      if (kind == harness::SuiteFileKind::kManifest || broken_manifest) {
+        add_manifest(file, allow_outside, cases, hashes, files, sink);
+      } else {
+        add_scenario(file, kind, allow_outside, cases, hashes, files);
+      }
     }
   }
   if (sink.error_count() != errors_before) return sink.already_reported();

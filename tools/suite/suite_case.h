@@ -20,6 +20,10 @@ struct SuiteCase {
   std::string group;  // what JUnit calls the class: the manifest, or the scenario's folder
   std::variant<harness::Expectation, harness::ManifestCase> check;
   std::vector<std::string> command = {};  // that the scenario names as its simulator
+  bool is_broken = false;                 // a scenario that cannot be read; running it says why
+  /// Hash of what the case is: its texts in the suite and the files that it names, whether or not
+  /// it is run.
+  std::string revision = {};
 
   /// Unique in a suite, and what --only looks at: `FILE`, or `FILE:ID`.
   std::string name() const { return id == file ? file : file + ':' + id; }
@@ -27,17 +31,18 @@ struct SuiteCase {
 
 enum class Outcome : std::uint8_t {
   kPassed,
-  kFailed,       // the answer is another one than expected
-  kError,        // no answer: a crash, a limit, a refused input
-  kNotFinished,  // the suite ended first
-  kSkipped,      // in another shard
+  kFailed,        // the answer is another one than expected
+  kError,         // no answer: a crash, a limit, a refused input
+  kInconclusive,  // as expected so far, but the run came to no verdict and none is expected
+  kNotFinished,   // the suite ended first
+  kSkipped,       // in another shard
 };
 std::string_view to_string(Outcome outcome);
 
 /// A file or folder that was looked at.
 struct InputFile {
   std::string path;
-  std::string sha256;  // of the content, of a folder its list; empty: there is none
+  std::string sha256;  // of the content, of a folder its list; empty: nothing is there
 };
 
 struct CaseResult {
@@ -62,9 +67,9 @@ struct CaseResult {
 
 /// The cases below the paths, sorted by group and id: manifests (a key `cases` at the outermost
 /// level), scenarios with `expect`, and scenarios that are broken but meant as a case, which must
-/// not pass by being skipped. Reported are a broken manifest, a missing path, and folders and YAML
-/// files that cannot be read or lie elsewhere. What is read, or will be, becomes an input of
-/// `files`.
+/// not pass by being skipped. A file is told by what a YAML parser finds in it (suite_file_kind).
+/// Reported are a broken manifest, a missing path, and folders and YAML files that cannot be read,
+/// are no text in UTF-8, or lie elsewhere. What is read, or will be, becomes an input of `files`.
 base::Result<std::vector<SuiteCase>> find_cases(const std::vector<std::string>& paths,
                                                 bool allow_outside, base::SourceFiles& files,
                                                 base::DiagnosticSink& sink);

@@ -31,9 +31,10 @@ Task task_of(std::size_t index, const SuiteCase& one, const StoredCases& earlier
 }  // namespace
 
 std::string line_of(const SuiteCase& one, const CaseResult& result) {
-  const auto* mark = result.outcome == Outcome::kPassed   ? "ok   "
-                     : result.outcome == Outcome::kFailed ? "FAIL "
-                                                          : "ERROR";
+  const auto* mark = result.outcome == Outcome::kPassed         ? "ok   "
+                     : result.outcome == Outcome::kFailed       ? "FAIL "
+                     : result.outcome == Outcome::kInconclusive ? "OPEN "
+                                                                : "ERROR";
   const auto how = result.reused.empty() ? fmt::format("{:.1f} s", result.wall_s) : result.reused;
   auto line = fmt::format("{} {} ({})", mark, one.name(), how);
   if (result.flaky()) line += fmt::format(", flaky: passed in attempt {}", result.attempts);
@@ -64,6 +65,8 @@ void Reuse::resume(const StoredCases& earlier, bool permits_more) {
     const bool finished =
         result.outcome != Outcome::kNotFinished && result.outcome != Outcome::kSkipped;
     if (permits_more && result.outcome == Outcome::kError) continue;
+    // What is expected may have changed where no file that was read has.
+    if (at->second.one.revision != record_.cases()[i].revision) continue;
     if (!finished || result.inputs.empty() || !hashes_.unchanged(result.inputs)) continue;
     if (result.ledger != ledger_digest_of(cache_.key().ledger, record_.cases()[i])) continue;
     result.reused = "resumed";

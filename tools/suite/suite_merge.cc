@@ -16,7 +16,10 @@ struct Part {
   StoredResults results;
 };
 
-using Parts = std::map<std::uint32_t, Part>;  // by the shard's index
+struct Parts {
+  std::map<std::uint32_t, Part> by_index;  // of the shard
+  std::vector<std::string> lost;           // folders without results
+};
 
 base::Reported refused(const std::string& folder, const std::string& why,
                        base::DiagnosticSink& sink) {
@@ -34,12 +37,53 @@ std::string only_in_one(const StoredCases& a, const StoredCases& b) {
   return {};
 }
 
+/// Finds shards that were run on different states of the cases and their files.
+class RevisionCheck {
+ public:
+  /// Why the part is of another revision than one before it; empty: it is not.
+  std::string add(const Part& part) {
+    for (const auto& [name, stored] : part.results.cases) {
+      if (auto why = differs("the case " + name, stored.one.revision, part.folder); !why.empty()) {
+        return why;
+      }
+      for (const auto& input : stored.result.inputs) {
+        if (auto why = differs(input.path, input.sha256, part.folder); !why.empty()) return why;
+      }
+    }
+    return {};
+  }
+
+ private:
+  struct Seen {
+    std::string content, folder;
+  };
+
+  std::string differs(const std::string& what, const std::string& content,
+                      const std::string& folder) {
+    const auto [at, is_new] = seen_.try_emplace(what, Seen{content, folder});
+    if (is_new || at->second.content == content) return {};
+    if (at->second.folder == folder) {
+      return fmt::format("{} was changed while this shard ran", what);
+    }
+    return fmt::format("this and {} are of different revisions: {} is not the same",
+                       at->second.folder, what);
+  }
+
+  std::map<std::string, Seen> seen_;
+};
+
 base::Result<Parts> read_parts(const std::vector<std::string>& folders,
                                base::DiagnosticSink& sink) {
-  Parts parts;
+  Parts out;
+  auto& parts = out.by_index;
+  RevisionCheck revisions;
   for (const auto& folder : folders) {
-    auto results = read_results(folder, sink);
-    if (!results) return sink.already_reported();
+    base::DiagnosticSink unread;
+    auto results = read_results(folder, unread);
+    if (!results) {
+      out.lost.push_back(folder);
+      continue;
+    }
     if (results->identity.program.empty()) {
       return refused(folder, "these results are of an older version; run the shard again", sink);
     }
@@ -61,21 +105,26 @@ base::Result<Parts> read_parts(const std::vector<std::string>& folders,
       }
     }
     const auto shard = results->identity.shard;
-    const auto [at, is_new] = parts.try_emplace(shard.index, Part{folder, *std::move(results)});
+    Part part{folder, *std::move(results)};
+    const auto why = revisions.add(part);
+    const auto [at, is_new] = parts.try_emplace(shard.index, std::move(part));
     if (!is_new) {
       return refused(
           folder, fmt::format("this and {} both are shard {}", at->second.folder, to_string(shard)),
           sink);
     }
+    if (!why.empty()) return refused(folder, why, sink);
   }
-  return parts;
+  if (!parts.empty()) return out;
+  for (const auto& folder : folders) (void)read_results(folder, sink);
+  return sink.already_reported();
 }
 
 /// The result of a case, of the shard it belongs to.
 base::Result<CaseResult> result_of(const std::string& name, const SuiteCase& one,
                                    const Parts& parts, base::DiagnosticSink& sink) {
   CaseResult out;
-  for (const auto& [index, part] : parts) {
+  for (const auto& [index, part] : parts.by_index) {
     const auto& shard = part.results.identity.shard;
     const auto& result = part.results.cases.at(name).result;
     const bool has_it = result.outcome != Outcome::kSkipped;
@@ -98,13 +147,14 @@ base::Result<MergedSuite> merge_suites(const std::vector<std::string>& folders,
                                        base::DiagnosticSink& sink) {
   auto parts = read_parts(folders, sink);
   if (!parts) return sink.already_reported();
-  const auto& first = parts->begin()->second.results;
+  const auto& first = parts->by_index.begin()->second.results;
   MergedSuite out;
   out.identity = first.identity;
   const auto count = first.identity.shard.count;
   out.identity.shard = {};
+  out.lost = std::move(parts->lost);
   for (std::uint32_t i = 1; i <= count; ++i) {
-    if (!parts->contains(i)) out.missing.push_back({i, count});
+    if (!parts->by_index.contains(i)) out.missing.push_back({i, count});
   }
   for (const auto& [name, stored] : first.cases) out.cases.push_back(stored.one);
   std::sort(out.cases.begin(), out.cases.end(), [](const SuiteCase& a, const SuiteCase& b) {

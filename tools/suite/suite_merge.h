@@ -15,11 +15,14 @@ struct MergedSuite {
   std::vector<SuiteCase> cases;
   std::vector<CaseResult> results;  // parallel; of a shard that is not there: kNotFinished
   std::vector<Shard> missing;       // no folder has these
+  std::vector<std::string> lost;    // folders without results that can be read
 };
 
-/// Reads the folders of shards (--out of each). Refused (kUsage), with both folders named: results
-/// of different programs, seeds or selections, a shard twice, a case that two shards have or that
-/// its own does not have, lists of cases that differ.
+/// Reads the folders of shards (--out of each). One that is absent, empty or cut short is a shard
+/// that is missing; only where no folder has results this is refused (kNoEarlierResults). Refused
+/// (kUsage), with both folders named: results of different programs, seeds, selections or revisions
+/// (lists of cases, their definitions, files that were read), a shard twice, a case that two shards
+/// have or that its own does not have.
 base::Result<MergedSuite> merge_suites(const std::vector<std::string>& folders,
                                        base::DiagnosticSink& sink);
 

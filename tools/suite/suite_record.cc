@@ -31,7 +31,10 @@ struct Tally {
     }
     failures += result.outcome == Outcome::kFailed ? 1 : 0;
     skipped += result.outcome == Outcome::kSkipped ? 1 : 0;
-    errors += result.outcome == Outcome::kError || result.outcome == Outcome::kNotFinished ? 1 : 0;
+    const bool no_answer = result.outcome == Outcome::kError ||
+                           result.outcome == Outcome::kInconclusive ||
+                           result.outcome == Outcome::kNotFinished;
+    errors += no_answer ? 1 : 0;
   }
   std::string attributes() const {
     return fmt::format(R"(tests="{}" failures="{}" errors="{}" skipped="{}" time="{:.3f}")", tests,
@@ -71,6 +74,7 @@ void append_case(std::string& out, const SuiteCase& one, const CaseResult& resul
       append_problem(out, "failure", result);
       break;
     case Outcome::kError:
+    case Outcome::kInconclusive:
       append_problem(out, "error", result);
       break;
     case Outcome::kNotFinished:
@@ -133,7 +137,8 @@ std::string to_junit(const std::vector<SuiteCase>& cases, const std::vector<Case
 
 bool is_quarantined(const SuiteCase& one, const CaseResult& result,
                     const harness::Quarantine& quarantine) {
-  const bool bad = result.outcome == Outcome::kFailed || result.outcome == Outcome::kError;
+  const bool bad = result.outcome == Outcome::kFailed || result.outcome == Outcome::kError ||
+                   result.outcome == Outcome::kInconclusive;
   return bad && quarantine.contains(one.name());
 }
 

@@ -61,8 +61,8 @@ SuiteIdentity identity_from_json(const Json& json) {
   return out;
 }
 
-constexpr std::array kOutcomes = {Outcome::kPassed, Outcome::kFailed, Outcome::kError,
-                                  Outcome::kNotFinished, Outcome::kSkipped};
+constexpr std::array kOutcomes = {Outcome::kPassed,       Outcome::kFailed,      Outcome::kError,
+                                  Outcome::kInconclusive, Outcome::kNotFinished, Outcome::kSkipped};
 
 std::optional<Outcome> outcome_of(const std::string& text) {
   for (const auto outcome : kOutcomes) {
@@ -142,6 +142,7 @@ std::optional<StoredCase> case_from_json(const std::string& name, const Json& js
   read(json, "file", out.one.file);
   read(json, "id", out.one.id);
   read(json, "group", out.one.group);
+  read(json, "revision", out.one.revision);
   if (out.one.file.empty() || out.one.name() != name) return std::nullopt;
   return out;
 }
@@ -223,6 +224,7 @@ base::Status write_results(const fs::path& folder, StoredResults stored,
     item["file"] = one.one.file;
     item["id"] = one.one.id;
     item["group"] = one.one.group;
+    item["revision"] = one.one.revision;
   }
   std::error_code error;
   fs::create_directories(folder, error);

@@ -32,7 +32,7 @@ struct SuiteIdentity {
 /// How two suites differ, "seed 1 and seed 2"; empty: in nothing but the index of their shards.
 std::string difference(const SuiteIdentity& a, const SuiteIdentity& b);
 
-/// A case as a results file keeps it; `expect` is not kept.
+/// A case as a results file keeps it; of `expect` only what `revision` tells is kept.
 struct StoredCase {
   SuiteCase one;
   CaseResult result;

@@ -140,6 +140,10 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
     if (auto why = blame(explanation); !why.empty()) result.problems.push_back(std::move(why));
   }
   if (options.ledger != nullptr) options.ledger->judge(one, shown_run(child.out), result);
+  if (result.problems.empty() && result.verdict == "inconclusive" && !expect.verdict) {
+    result.outcome = Outcome::kInconclusive;
+    result.problems = {"the run is inconclusive, and `expect` has no `verdict`"};
+  }
   if (result.problems.empty()) return;
   result.problems.push_back("report: " + (folder / "report.txt").string());
 }
@@ -183,7 +187,8 @@ bool one_attempt_decides(const SuiteCase& one) {
 }
 
 bool is_open(const CaseResult& result) {
-  return result.outcome == Outcome::kFailed || result.outcome == Outcome::kError;
+  return result.outcome == Outcome::kFailed || result.outcome == Outcome::kError ||
+         result.outcome == Outcome::kInconclusive;
 }
 
 }  // namespace

@@ -81,6 +81,7 @@ std::string summary_text(const SuiteRecord& record) {
     if (count > 0) text += fmt::format(", {} {}", count, words);
   };
   append(record.count(Outcome::kError), "without an answer");
+  append(record.count(Outcome::kInconclusive), "inconclusive");
   append(record.count(Outcome::kNotFinished), "not run");
   append(record.count(Outcome::kSkipped), "in other shards");
   append(record.quarantined(), "quarantined");
@@ -110,6 +111,7 @@ std::string summary_document(const SuiteRecord& record) {
                                    {"passed", record.count(Outcome::kPassed)},
                                    {"failed", record.count(Outcome::kFailed)},
                                    {"errors", record.count(Outcome::kError)},
+                                   {"inconclusive", record.count(Outcome::kInconclusive)},
                                    {"not_run", record.count(Outcome::kNotFinished)},
                                    {"skipped", record.count(Outcome::kSkipped)},
                                    {"quarantined", record.quarantined()},

@@ -24,19 +24,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The number that the last line of a list of traces begins with, "4 traces, complete ...".
-std::optional<std::int64_t> listed_traces(std::string_view text) {
-  const auto end = text.find_last_not_of('\n');
-  if (end == std::string_view::npos) return std::nullopt;
-  text = text.substr(0, end + 1);
-  const auto newline = text.rfind('\n');
-  if (newline != std::string_view::npos) text.remove_prefix(newline + 1);
-  const auto digits = std::min(text.find_first_not_of("0123456789"), text.size());
-  const auto rest = text.substr(digits);
-  if (!rest.starts_with(" trace, ") && !rest.starts_with(" traces, ")) return std::nullopt;
-  return base::whole_number<std::int64_t>(text.substr(0, digits));
-}
-
 /// One trace more than all that are expected; 0, for all, where nobody knows how many these are.
 std::int64_t one_too_many(const harness::TraceExpectation& expect) {
   if (expect.traces) return *expect.traces + 1;
@@ -229,6 +216,18 @@ bool check_property(const harness::ManifestCase& one, const std::string& propert
 }
 
 }  // namespace
+
+std::optional<std::int64_t> listed_traces(std::string_view text) {
+  const auto end = text.find_last_not_of('\n');
+  if (end == std::string_view::npos) return std::nullopt;
+  text = text.substr(0, end + 1);
+  const auto newline = text.rfind('\n');
+  if (newline != std::string_view::npos) text.remove_prefix(newline + 1);
+  const auto digits = std::min(text.find_first_not_of("0123456789"), text.size());
+  const auto rest = text.substr(digits);
+  if (!rest.starts_with(" trace, ") && !rest.starts_with(" traces, ")) return std::nullopt;
+  return base::whole_number<std::int64_t>(text.substr(0, digits));
+}
 
 void run_traces(const harness::ManifestCase& one, const fs::path& manifest,
                 const RunnerOptions& options, Footprint& footprint, const std::atomic<bool>& stop,

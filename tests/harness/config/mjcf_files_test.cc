@@ -46,6 +46,9 @@ TEST_CASE("includes and meshes lie beside the file or in a folder of models, by 
   CHECK(extent("large") == doctest::Approx(0.4 * std::sqrt(2.0)));
   CHECK(extent("small") == doctest::Approx(0.2 * std::sqrt(2.0)));
   const auto read = workspace.files.inputs();
+  // Beside the description it was looked for first.
+  const auto beside = std::filesystem::canonical(workspace.folder()) / "shared/three.xml";
+  CHECK(std::any_of(read.begin(), read.end(), [&](const auto& one) { return one == beside; }));
   for (const char* name : {"parts/box.xml", "models/shared/three.xml", "parts/deep/thing.obj"}) {
     const auto real = std::filesystem::canonical(workspace.folder() / name).string();
     CHECK_MESSAGE(std::any_of(read.begin(), read.end(),

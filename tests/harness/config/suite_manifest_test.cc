@@ -132,11 +132,34 @@ TEST_CASE("a case expects something, and a manifest has cases") {
   CHECK(workspace.report("cases:\n  - one\n").starts_with("E5107 at 2:5: the case is"));
 }
 
-TEST_CASE("a manifest is told by its outermost key") {
-  CHECK(looks_like_manifest(kOneCase));
-  CHECK(looks_like_manifest("defaults: {}\ncases: []\n"));
-  CHECK_FALSE(looks_like_manifest(kScenario));
-  CHECK_FALSE(looks_like_manifest("limits:\n  cases: 3\n"));
+TEST_CASE("a manifest is told by its outermost key, however that is written") {
+  ManifestWorkspace workspace;
+  const auto kind = [&](const std::string& text) {
+    return suite_file_kind(workspace.write("file.yaml", text), false);
+  };
+  for (const auto* manifest :
+       {kOneCase.c_str(), "defaults: {}\ncases: []\n", "\"cases\": []\n", "'cases' : []\n",
+        "{cases: []}\n", "--- {\"cases\": []}\n",
+        "\xEF\xBB\xBF"
+        "cases: []\n",
+        "? cases\n: []\n", "\"c\\x61ses\": []\n", "%YAML 1.2\n---\ncases: []\n", "  cases: []\n",
+        "x: 1\r\ncases: []\r\n", "include: gone.yaml\ncases: []\n"}) {
+    CAPTURE(manifest);
+    CHECK(kind(manifest) == SuiteFileKind::kManifest);
+  }
+  workspace.write("base.yaml", kOneCase);
+  CHECK(kind("include: base.yaml\n") == SuiteFileKind::kManifest);
+  CHECK(kind(kScenario) == SuiteFileKind::kScenario);
+  CHECK(kind("{\"expect\": {verdict: discrepancy}}") == SuiteFileKind::kScenario);
+  for (const auto* other : {"limits:\n  cases: 3\n", "- cases: []\n", "cases\n", "", "# cases:\n",
+                            "text: |\n  cases:\n"}) {
+    CAPTURE(other);
+    CHECK(kind(other) == SuiteFileKind::kOther);
+  }
+  for (const auto* broken : {"cases: [\n", "include: gone.yaml\n", "a: b: c\n", "x: {\n"}) {
+    CAPTURE(broken);
+    CHECK(kind(broken) == SuiteFileKind::kBroken);
+  }
 }
 
 }  // namespace

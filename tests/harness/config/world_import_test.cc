@@ -32,6 +32,19 @@ void insert_before(const std::filesystem::path& path, const std::string& mark,
   std::ofstream(path) << content.insert(at, text);
 }
 
+TEST_CASE("where a model was looked for in vain is an input, too") {
+  if (!reads_sdf()) return;
+  Workspace workspace;
+  file_in_scenarios(workspace, "worlds/office.sdf");
+  file_in_scenarios(workspace, "worlds/models");
+  std::filesystem::create_directory(workspace.folder() / "near");
+  REQUIRE(
+      workspace.load(scenario_with("  sdf: office.sdf\n  models: [near, models]\n")).has_value());
+  const auto inputs = workspace.files.inputs();
+  const auto near = std::filesystem::canonical(workspace.folder() / "near") / "mug";
+  CHECK(std::count(inputs.begin(), inputs.end(), near.string()) > 0);
+}
+
 TEST_CASE("an office in SDF: includes, frames, a door on its hinge, and what is left out is said") {
   if (!reads_sdf()) return;
   Workspace workspace;

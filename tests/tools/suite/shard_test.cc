@@ -100,6 +100,12 @@ TEST_CASE("a job array may count from any number in any steps, but without gaps"
   CHECK(task("11", "4", "10", "40", "10").empty());
   CHECK(task("1", "0", "1", "4", "1").empty());
   CHECK(task("", "", "", "", "").empty());
+  // A task of a larger array that was submitted again by itself is no whole.
+  CHECK(task("3", "1", "3", "3", "1").empty());
+  CHECK(task("2", "1", "2", "2", "1").empty());
+  CHECK(chosen("env", {{"SLURM_ARRAY_TASK_ID", "3"}, {"SLURM_ARRAY_TASK_COUNT", "1"}}).empty());
+  CHECK(task("0", "1", "0", "0", "1") == "1/1");
+  CHECK(task("1", "1", "1", "1", "1") == "1/1");
   // A system that tells only these two counts from 1.
   CHECK(chosen("slurm", {{"SLURM_ARRAY_TASK_ID", "2"}, {"SLURM_ARRAY_TASK_COUNT", "2"}}) == "2/2");
   CHECK(chosen("slurm", {{"SLURM_ARRAY_TASK_ID", "3"}, {"SLURM_ARRAY_TASK_COUNT", "2"}}).empty());

@@ -80,6 +80,26 @@ TEST_CASE("a readable folder gives its cases") {
   CHECK(found.cases.size() == 2);
 }
 
+TEST_CASE("a case is found however its file is written and called") {
+  const Folder folder;
+  constexpr const char* kList = "[{id: two, model: lamp.e, expect: {traces: 1}}]";
+  const auto list = std::string(kList);
+  folder.write("s/quoted.yaml", "\"cases\": " + list + '\n');
+  folder.write("s/flow.yaml", "{cases: " + list + "}\n");
+  folder.write("s/mark.yaml",
+               "\xEF\xBB\xBF"
+               "cases: " +
+                   list + '\n');
+  folder.write("s/start.yml", "%YAML 1.2\n---\ncases: " + list + '\n');
+  folder.write("s/shout.YAML", "cases: " + list + '\n');
+  folder.write("s/returns.yaml", "defaults: {}\r\ncases: " + list + "\r\n");
+  folder.write("s/by_include.yaml", "include: good.yaml\n");
+  folder.write("s/expects.yaml", "{\"expect\": {verdict: discrepancy}}\n");
+  const auto found = find_in(folder.path() / "s");
+  CHECK(found.code == 0);
+  CHECK(found.cases.size() == 9);
+}
+
 TEST_CASE("a YAML file that cannot be read is an error at its place") {
   const Folder folder;
   const auto bad = folder.path() / "s" / "bad.yaml";
@@ -88,6 +108,22 @@ TEST_CASE("a YAML file that cannot be read is an error at its place") {
   SUBCASE("a FIFO") { REQUIRE(::mkfifo(bad.c_str(), 0600) == 0); }
   SUBCASE("a scenario that is too large") {
     folder.write("s/bad.yaml", "expect: {verdict: discrepancy}\n#" + std::string(1 << 20, 'x'));
+  }
+  SUBCASE("UTF-16") {
+    std::string text = "\xFF\xFE";
+    for (const char c : std::string("cases: [{id: x, model: lamp.e, expect: {traces: 9}}]\n")) {
+      text += c;
+      text += '\0';
+    }
+    folder.write("s/bad.yaml", text);
+  }
+  SUBCASE("no UTF-8") {
+    folder.write("s/bad.yaml",
+                 "title: Stra\xDF"
+                 "e\n");
+  }
+  SUBCASE("a large one that a parser may find cases in") {
+    folder.write("s/bad.yaml", "{\"cases\": []}\n#" + std::string(1 << 20, 'x'));
   }
   SUBCASE("a manifest that is too large") {
     folder.write("s/bad.yaml", "cases: []\n#" + std::string(1 << 20, 'x'));
@@ -153,6 +189,10 @@ TEST_CASE("a broken variant of a case is a case, whose process says what is wron
   for (const auto* broken : {"variant.yaml", "slip.yaml", "junk.yaml", "typo.yaml"}) {
     CAPTURE(broken);
     CHECK(std::count(names.begin(), names.end(), broken) == 1);
+    const auto is_this = [&](const SuiteCase& one) {
+      return fs::path(one.file).filename() == broken;
+    };
+    CHECK(std::find_if(found.cases.begin(), found.cases.end(), is_this)->is_broken);
   }
   CHECK(std::count(names.begin(), names.end(), "world.yaml") == 0);
   CHECK(std::count(names.begin(), names.end(), "lost.yaml") == 1);

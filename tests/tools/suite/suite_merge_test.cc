@@ -98,6 +98,80 @@ TEST_CASE("a shard that was ended is completed by its rerun") {
   CHECK(cli.merge({"o1", "o2", "o3", "o4"}).out == "19 passed, 5 failed\n");
 }
 
+/// Two shards in o1 and o2, of eight cases that pass.
+class TwoShards : public SuiteFixture {
+ public:
+  TwoShards() {
+    std::string text = "cases:\n";
+    for (int i = 0; i < 8; ++i) {
+      text += "  - {id: c" + std::to_string(i) + ", model: lamp.e, expect: {traces: 2}}\n";
+    }
+    write("s/suite.yaml", text);
+    run("1");
+    run("2");
+  }
+  void run(const std::string& i) const {
+    (void)suite({"--out", "o" + i, "--shard", i + "/2", "--no-cache"});
+  }
+  ProcessResult merge(std::vector<std::string> folders, const std::string& junit) const {
+    folders.insert(folders.begin(),
+                   {"suite", "--json", "--out", "merged", "--junit", junit, "--merge"});
+    return parallax(folders);
+  }
+};
+
+TEST_CASE("a shard that left nothing, or half of it, is one that has not finished") {
+  const TwoShards cli;
+  const auto second = cli.read("o2/results.json");
+  cli.write("o2/results.json", "");
+  SUBCASE("absent") { fs::remove_all(cli.folder() / "o2"); }
+  SUBCASE("an empty folder") { fs::remove(cli.folder() / "o2/results.json"); }
+  SUBCASE("an empty file") {}
+  SUBCASE("cut") { cli.write("o2/results.json", second.substr(0, second.size() / 2)); }
+  SUBCASE("cut to a whole document") { cli.write("o2/results.json", "{}"); }
+  const auto result = cli.merge({"o1", "o2"}, "merged.xml");
+  const auto unnamed = cli.merge({"o1"}, "unnamed.xml");
+  CHECK(holds(result.err, "o2/results.json has no results that can be read"));
+  CHECK(holds(result.err, "shard 2/2 is missing"));
+  CHECK(result.code == 4);
+  CHECK(unnamed.code == 4);
+  CHECK(result.out == unnamed.out);
+  CHECK(without_times(cli.read("merged.xml")) == without_times(cli.read("unnamed.xml")));
+  CHECK(holds(cli.read("merged.xml"), "not finished: shard 2/2 is missing"));
+}
+
+TEST_CASE("shards of different revisions are refused, wherever they differ") {
+  const TwoShards cli;
+  const auto load_extra = [&] {
+    cli.write("s/lamp.e", std::string(kLamp) + "load extra.e\n");
+    cli.run("1");
+  };
+  cli.write("s/extra.e", "event Blink()\n");
+  std::string what = "is not the same";
+  SUBCASE("the model") { cli.write("s/lamp.e", std::string(kLamp) + "event Blink()\n"); }
+  SUBCASE("what is expected") {
+    cli.replace("s/suite.yaml", "c1, model: lamp.e, expect: {traces: 2",
+                "c1, model: lamp.e, expect: {traces: 4");
+  }
+  SUBCASE("a horizon") { cli.replace("s/suite.yaml", "c2, model", "c2, horizon: 1, model"); }
+  SUBCASE("a text that the model loads") {
+    load_extra();
+    cli.write("s/extra.e", "event Blink()\nevent Wink()\n");
+    what = "s/extra.e is not the same";
+  }
+  SUBCASE("a text that hides another one") {
+    cli.write("extra.e", "event Blink()\n");
+    load_extra();
+    fs::remove(cli.folder() / "s/extra.e");
+    what = "s/extra.e is not the same";
+  }
+  cli.run("2");
+  const auto result = cli.merge({"o1", "o2"}, "merged.xml");
+  CHECK(result.code == 2);
+  CHECK_MESSAGE(holds(result.err, "this and o1 are of different revisions"), result.err);
+  CHECK_MESSAGE(holds(result.err, what), result.err);
+}
+
 TEST_CASE("shards that do not belong together are refused, with both of them named") {
   const Shards cli;
   const auto refused = [&](const std::vector<std::string>& folders, const std::string& why) {
@@ -108,7 +182,7 @@ TEST_CASE("shards that do not belong together are refused, with both of them nam
   };
   refused({"o1", "o1"}, "this and o1 both are shard 1/4");
   refused({"o1", "whole"}, "this and o1 are of different suites: 4 shards and 1");
-  refused({"o1", "absent"}, "absent/results.json");
+  refused({"absent", "nowhere"}, "absent/results.json");
   cli.run(2, "7");
   refused({"o1", "o2"}, "this and o1 are of different suites: seed 1 and 7");
   cli.run(2);

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "compiler/base/folder_lock.h"
 #include "compiler/base/sha256.h"
 #include "tests/tools/cli_json.h"
 #include "tests/tools/suite/suite_fixture.h"
@@ -41,6 +42,44 @@ TEST_CASE("results of another suite are not gone on with") {
   refused({"--resume", "--only", "lit"}, "--only `` and `lit`");
   refused({"--resume", "--rerun-failed"}, "exclude each other");
   CHECK(cli.suite({"--resume"}).code == 0);
+}
+
+TEST_CASE("a folder of results belongs to one suite at a time") {
+  const SuiteFixture cli;
+  base::DiagnosticSink sink;
+  const auto refused = [&](const std::vector<std::string>& arguments) {
+    const auto result = cli.parallax(arguments);
+    CHECK(result.code == 2);
+    CHECK_MESSAGE(holds(result.err, "E7181"), result.err);
+    CHECK_FALSE(holds(result.err, "--resume"));
+  };
+  {
+    const auto held = base::FolderLock::claim(cli.folder() / "o", sink);
+    REQUIRE(held.has_value());
+    refused({"suite", "s", "--out", "o"});
+    refused({"suite", "s", "--out", "o", "--resume"});
+    refused({"suite", "s", "--out", "o", "--mutate"});
+    refused({"suite", "--merge", "s", "--out", "o"});
+    refused({"run", "wrong_model.yaml", "--out", "o", "--resume"});
+    CHECK(fs::is_empty(cli.folder() / "o"));
+  }
+  CHECK(cli.suite({"--out", "o", "--update-goldens"}).code == 0);
+}
+
+TEST_CASE("a golden file that no case names is told") {
+  const SuiteFixture cli;
+  REQUIRE(cli.suite({"--update-goldens"}).code == 0);
+  CHECK_FALSE(holds(cli.suite({}).err, "is a golden file of no case"));
+  fs::copy_file(cli.folder() / "s/expected/both.txt", cli.folder() / "s/expected/old.txt");
+  fs::create_directory(cli.folder() / "s/deep");
+  fs::copy_file(cli.folder() / "s/expected/both.txt", cli.folder() / "s/deep/other.txt");
+  cli.write("s/notes.txt", "There are\n2 traces, I think\nof this.\n");
+  const auto result = cli.suite({"--fast"});
+  CHECK(result.code == 0);
+  CHECK(holds(result.err, "s/expected/old.txt is a golden file of no case"));
+  CHECK(holds(result.err, "s/deep/other.txt is a golden file of no case"));
+  CHECK_FALSE(holds(result.err, "both.txt is"));
+  CHECK_FALSE(holds(result.err, "notes.txt"));
 }
 
 TEST_CASE("what was refused for want of a permission is run again with it") {
