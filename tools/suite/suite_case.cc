@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <set>
 #include <tuple>
 
+#include "compiler/artifact/artifact_reader.h"
+#include "compiler/artifact/artifact_writer.h"
 #include "compiler/base/ascii.h"
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
@@ -165,10 +168,29 @@ void add_scenario(const std::string& file, harness::SuiteFileKind kind, bool all
   cases.push_back(std::move(out));
 }
 
+/// Warns of compiled models that are older than their texts: the processes of the cases are silent.
+void tell_stale_models(const harness::SuiteManifest& manifest, base::SourceFiles& files,
+                       base::DiagnosticSink& sink) {
+  std::set<std::string> compiled;
+  for (const auto& one : manifest.cases) {
+    for (const auto& model : one.models) {
+      if (compiler::is_artifact_name(model.text)) compiled.insert(model.text);
+    }
+  }
+  for (const auto& path : compiled) {
+    base::SourceFiles own;
+    base::DiagnosticSink found;
+    // What else is wrong with it its case says.
+    const bool reads_well = compiler::load_artifact(path, own, found).has_value();
+    if (reads_well && found.warning_count() > 0) (void)compiler::load_artifact(path, files, sink);
+  }
+}
+
 void add_manifest(const std::string& file, bool allow_outside, std::vector<SuiteCase>& cases,
                   InputHashes& hashes, base::SourceFiles& files, base::DiagnosticSink& sink) {
   auto manifest = harness::load_manifest(file, files, sink, allow_outside);
   if (!manifest) return;
+  tell_stale_models(*manifest, files, sink);
   for (auto& one : manifest->cases) {
     std::vector<std::string> named;
     for (const auto& model : one.models) named.push_back(model.text);

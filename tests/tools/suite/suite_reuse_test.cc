@@ -66,6 +66,18 @@ TEST_CASE("a folder of results belongs to one suite at a time") {
   CHECK(cli.suite({"--out", "o", "--update-goldens"}).code == 0);
 }
 
+TEST_CASE("a suite tells a compiled model that is older than its texts") {
+  const SuiteFixture cli;
+  REQUIRE(cli.parallax({"compile", "s/lamp.e", "-o", "s/lamp.dec.cnf"}).code == 0);
+  cli.write("s/suite.yaml", "cases:\n  - {id: a, model: lamp.dec.cnf, expect: {traces: 2}}\n");
+  CHECK_FALSE(holds(cli.suite({}).err, "W6080"));
+  cli.write("s/lamp.e", std::string(kLamp) + "event Blink()\n");
+  const auto result = cli.suite({});
+  CHECK(result.code == 0);
+  CHECK(holds(result.err, "W6080"));
+  CHECK(holds(result.err, "the text `s/lamp.e` has changed"));
+}
+
 TEST_CASE("a golden file that no case names is told") {
   const SuiteFixture cli;
   REQUIRE(cli.suite({"--update-goldens"}).code == 0);
