@@ -18,12 +18,17 @@ Result<FolderLock> FolderLock::claim(const std::filesystem::path& path, Diagnost
   FolderLock lock;
   lock.path_ = path;
   std::error_code error;
-  lock.made_ = std::filesystem::create_directories(path, error);
+  auto folder = path;
+  while (!folder.empty() && !std::filesystem::exists(folder, error)) {
+    lock.made_.push_back(folder);
+    folder = folder.parent_path();
+  }
+  std::filesystem::create_directories(path, error);
   if (error) return sink.error_about(codes::kFileNotWritable, path.string(), error.message());
   lock.fd_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock.fd_ >= 0 && ::flock(lock.fd_, LOCK_EX | LOCK_NB) == 0) return lock;
   const int why = errno;
-  lock.made_ = false;  // whoever holds it may be about to use it
+  lock.made_.clear();  // whoever holds it may be about to use it
   if (why == EWOULDBLOCK) return sink.error_about(codes::kFolderInUse, path.string());
   return sink.error_about(codes::kFileNotWritable, path.string(), std::strerror(why));
 }
@@ -31,10 +36,13 @@ Result<FolderLock> FolderLock::claim(const std::filesystem::path& path, Diagnost
 FolderLock::FolderLock(FolderLock&& other) noexcept
     : path_(std::move(other.path_)),
       fd_(std::exchange(other.fd_, -1)),
-      made_(std::exchange(other.made_, false)) {}
+      made_(std::exchange(other.made_, {})) {}
 
 FolderLock::~FolderLock() {
-  if (made_) ::rmdir(path_.c_str());  // which leaves alone a folder that is not empty
+  // A folder that is not empty stays, and so do those above it.
+  for (const auto& folder : made_) {
+    if (::rmdir(folder.c_str()) != 0) break;
+  }
   if (fd_ >= 0) ::close(fd_);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "compiler/base/diagnostic.h"
 
@@ -13,7 +14,8 @@ class FolderLock {
   /// Makes the folder if it is missing. Reports kFolderInUse when another process holds it, else
   /// kFileNotWritable.
   static Result<FolderLock> claim(const std::filesystem::path& path, DiagnosticSink& sink);
-  /// Gives the folder back; removes it if it was made here and nothing was put into it.
+  /// Gives the folder back; removes it, and those above it, if it was made here and nothing was put
+  /// into it.
   ~FolderLock();
   FolderLock(FolderLock&& other) noexcept;
   FolderLock& operator=(FolderLock&&) = delete;
@@ -27,7 +29,7 @@ class FolderLock {
 
   std::filesystem::path path_;
   int fd_ = -1;
-  bool made_ = false;
+  std::vector<std::filesystem::path> made_;  // the innermost first
 };
 
 }  // namespace parallax::base

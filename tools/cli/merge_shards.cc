@@ -15,6 +15,7 @@ namespace parallax::tools {
 int merge_shards(const SuiteOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto quarantine = quarantine_of(options, invocation);
+  if (!options.out_given && !base::check_unnamed_output(options.out, ".", "--out", sink)) return 0;
   const auto lock = base::FolderLock::claim(options.out, sink);
   if (!lock) return 0;
   auto merged = merge_suites(options.merge, sink);
@@ -22,7 +23,6 @@ int merge_shards(const SuiteOptions& options, Invocation& invocation) {
       !may_append(options, invocation)) {
     return 0;
   }
-  if (!options.out_given && !base::check_unnamed_output(options.out, ".", "--out", sink)) return 0;
   for (const auto& folder : options.merge) {
     std::error_code error;
     if (!std::filesystem::equivalent(folder, options.out, error)) continue;

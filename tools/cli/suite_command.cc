@@ -228,6 +228,7 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
     invocation.remark(
         fmt::format("--shard {}: this is shard {}", options.shard, to_string(*shard)));
   }
+  if (!check_suite_folder(options, sink)) return 0;
   const auto lock = base::FolderLock::claim(options.out, sink);
   if (!lock) return 0;
   const SuiteIdentity identity{
@@ -239,8 +240,8 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
   const auto quarantine = quarantine_of(options, invocation);
   auto cases = wanted_cases(options, earlier->cases, invocation);
   const auto ledger = ledger_of(options, invocation);
-  if (!quarantine || !cases || !ledger || !check_suite_folder(options, sink) ||
-      !may_write(options, invocation) || !may_append(options, invocation)) {
+  if (!quarantine || !cases || !ledger || !may_write(options, invocation) ||
+      !may_append(options, invocation)) {
     return 0;
   }
   const auto* known = *ledger ? &**ledger : nullptr;
