@@ -13,8 +13,9 @@ constexpr std::size_t kMaxInstances = 1'000'000;  // of one predicate that are m
 
 }  // namespace
 
-CompletionWriter::CompletionWriter(GroundModel& model, Meaning meaning)
+CompletionWriter::CompletionWriter(GroundModel& model, Meaning meaning, bool lint)
     : model_(model), meaning_(meaning) {
+  if (lint && meaning == Meaning::kStandard) loops_.emplace(model);
   const auto& core = model.typed().core;
   for (const auto& completion : model.typed().completions) {
     auto kind = AtomKind::kPredicate;
@@ -44,21 +45,21 @@ bool CompletionWriter::completes(const Entry& entry, const GroundAtom& atom) con
          model_.terms()[GroundTermId(atom.index)].symbol == entry.completion->predicate;
 }
 
-bool CompletionWriter::note(const std::string& label, FormulaId formula, Timepoint width,
+bool CompletionWriter::note(const Axiom& axiom, FormulaId formula, Timepoint width,
                             const OpaqueEffects* effects) {
   if (entries_.empty()) return true;
   const bool old = meaning_ == Meaning::kDecreasoner;
-  if (old && note_old_clauses(label, formula)) return true;
+  if (old && note_old_clauses(axiom.label, formula)) return true;
   const auto& formulas = model_.formulas();
   bool any_reason = false;
   if (formulas.kind(formula) == FormulaNodeKind::kAnd && !formula.negated()) {
     const auto children = formulas.children(formula);
     const std::vector<FormulaId> parts(children.begin(), children.end());
     for (const auto part : parts) {
-      any_reason = note_conjunct(label, part, width, effects) || any_reason;
+      any_reason = note_conjunct(axiom, part, width, effects) || any_reason;
     }
   } else {
-    any_reason = note_conjunct(label, formula, width, effects);
+    any_reason = note_conjunct(axiom, formula, width, effects);
   }
   return !old || !any_reason;
 }
@@ -88,16 +89,18 @@ bool CompletionWriter::note_old_clauses(const std::string& label, FormulaId form
   return true;
 }
 
-bool CompletionWriter::note_conjunct(const std::string& label, FormulaId formula, Timepoint width,
+bool CompletionWriter::note_conjunct(const Axiom& axiom, FormulaId formula, Timepoint width,
                                      const OpaqueEffects* effects) {
   bool any_reason = false;
   for (const auto variable : positive_atoms(model_.formulas(), formula)) {
     const auto atom = model_.atom(variable);
     for (auto& entry : entries_) {
       const auto& wanted = entry.completion->label;
-      if (!completes(entry, atom) || (wanted && *wanted != label)) continue;
-      const auto reason = ~substitute(model_.formulas(), formula, variable, false);
-      note_reason(atom, effects == nullptr ? reason : effects->resolved(reason), width, entry);
+      if (!completes(entry, atom) || (wanted && *wanted != axiom.label)) continue;
+      const auto opposite = ~substitute(model_.formulas(), formula, variable, false);
+      const auto reason = effects == nullptr ? opposite : effects->resolved(opposite);
+      note_reason(atom, reason, width, entry);
+      if (loops_) loops_->add(atom, reason, width, axiom.source);
       any_reason = true;
     }
   }
@@ -161,6 +164,17 @@ void CompletionWriter::assert_completed(FormulaId atom, std::vector<FormulaId> r
   } else {
     model_.require_always(completed, origin, width);
   }
+}
+
+void CompletionWriter::report_loops(base::DiagnosticSink& sink) {
+  if (!loops_) return;
+  // With several completions an atom needs several reasons at once.
+  loops_->report(
+      [&](const GroundAtom& atom) {
+        return std::count_if(entries_.begin(), entries_.end(),
+                             [&](const Entry& entry) { return completes(entry, atom); }) == 1;
+      },
+      sink);
 }
 
 void CompletionWriter::write() {

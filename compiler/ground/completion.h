@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "compiler/ground/ground_model.h"
 #include "compiler/ground/opaque_effects.h"
+#include "compiler/ground/support_loops.h"
 
 namespace parallax::compiler {
 
@@ -20,13 +22,16 @@ namespace parallax::compiler {
 /// In the 2005 reasoner's meaning the formulas are the clauses that it makes of them.
 class CompletionWriter {
  public:
-  CompletionWriter(GroundModel& model, Meaning meaning);
-  /// Notes an axiom with this label (empty without one): a formula that holds once, or, with a
-  /// width, at every timepoint as GroundModel::require_always has it. Call for every axiom.
+  /// `lint`: what has itself for a reason is looked for as well.
+  CompletionWriter(GroundModel& model, Meaning meaning, bool lint);
+  /// Notes what an axiom, with its label (empty without one), says: a formula that holds once, or,
+  /// with a width, at every timepoint as GroundModel::require_always has it. Call for every axiom.
   /// `effects`: what atoms in the formula stand for effects, if it mentions any. False: the 2005
   /// reasoner completes over clauses that are not made here, and with less effect.
-  bool note(const std::string& label, FormulaId formula, Timepoint width,
+  bool note(const Axiom& axiom, FormulaId formula, Timepoint width,
             const OpaqueEffects* effects = nullptr);
+  /// Warns of completed atoms that are reasons of each other. To be called once, before `write`.
+  void report_loops(base::DiagnosticSink& sink);
   /// Does the model complete anything?
   bool has_completions() const { return !entries_.empty(); }
   /// The first completion of a predicate, if it has one.
@@ -62,7 +67,7 @@ class CompletionWriter {
 
   bool completes(const Entry& entry, const GroundAtom& atom) const;
   const Entry* first_entry(SymbolId predicate) const;
-  bool note_conjunct(const std::string& label, FormulaId formula, Timepoint width,
+  bool note_conjunct(const Axiom& axiom, FormulaId formula, Timepoint width,
                      const OpaqueEffects* effects);
   bool note_old_clauses(const std::string& label, FormulaId formula);
   void note_reason(const GroundAtom& atom, FormulaId reason, Timepoint width, Entry& entry);
@@ -75,6 +80,7 @@ class CompletionWriter {
   GroundModel& model_;
   Meaning meaning_;
   std::vector<Entry> entries_;  // in the order of the model
+  std::optional<SupportLoops> loops_;
 };
 
 }  // namespace parallax::compiler

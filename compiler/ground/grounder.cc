@@ -39,7 +39,7 @@ class Grounder {
         possible_(model),
         rows_(model.fluents().size()),
         effects_(model, grounder_, rows_),
-        completion_(model, options.meaning),
+        completion_(model, options.meaning, options.lint),
         opaque_(model, rows_),
         standard_(options.meaning == Meaning::kStandard),
         relevance_(standard_ && options.relevance),
@@ -107,7 +107,10 @@ class Grounder {
     assert_axioms(std::nullopt);
   }
 
-  void completion() { completion_.write(); }
+  void completion() {
+    completion_.report_loops(sink_);
+    completion_.write();
+  }
   void trajectories() { assert_trajectories(model_, rows_, grounder_, sink_); }
   void inertia() { assert_inertia(model_, rows_, options_); }
   void invariants() {
@@ -227,7 +230,7 @@ class Grounder {
     // The encoder of 2005 takes no axiom about effects for a reason.
     if (standard_ ? defines_by_effects(typed_, axiom) : axiom.mentions_effects) return;
     const auto width = always ? profile.width : Constraint::kOnce;
-    if (!completion_.note(axiom.label, *formula, width, opaque ? &opaque_ : nullptr)) {
+    if (!completion_.note(axiom, *formula, width, opaque ? &opaque_ : nullptr)) {
       sink_.warning(codes::kNamedCompletion, axiom.source);
     }
   }

@@ -73,6 +73,7 @@ struct GroundOptions {
   std::size_t keep_unreachable = 100'000;
   /// Add what follows by induction (compiler/ground/invariants.h); needs `templates`.
   bool invariants = true;
+  bool lint = false;  // also report completed atoms that are reasons of each other
 };
 
 /// The domain of every sort as ground terms, in the order that fixes all numbering: subsorts in

@@ -10,7 +10,7 @@ namespace parallax::compiler {
 using base::DiagnosticCode;
 
 std::span<const LintRule> lint_rules() {
-  static constexpr std::array<LintRule, 15> kRules = {{
+  static constexpr std::array<LintRule, 18> kRules = {{
       {codes::kFluentWithoutEffects, "fluent-without-effects",
        "an inertial fluent that no event changes", find_fluents_without_effects},
       {codes::kFluentOneWay, "fluent-one-way",
@@ -43,6 +43,13 @@ std::span<const LintRule> lint_rules() {
        find_effect_arguments},
       {codes::kSharedExclusion, "shared-exclusion",
        "mutex and xor that exclude less than their names say", find_shared_exclusions},
+      {codes::kInventedByEvent, "invented-by-event",
+       "a precondition that a completion takes for a reason", find_invented_predicates},
+      {codes::kCompletedTwice, "completed-twice", "a predicate with several completions",
+       find_repeated_completions},
+      {codes::kDependsOnHorizon, "depends-on-horizon",
+       "a formula that says less of earlier timepoints at a longer horizon",
+       find_horizon_dependences},
   }};
   return kRules;
 }
@@ -56,6 +63,14 @@ std::span<const LintRule> difference_rules() {
       {codes::kNestedArithmetic, "nested-arithmetic",
        "arithmetic inside arithmetic in an effect axiom", find_nested_arithmetic},
   }};
+  return kRules;
+}
+
+std::span<const LintRule> horizon_rules() {
+  static constexpr std::array<LintRule, 1> kRules = {
+      {{codes::kDependsOnHorizon, "depends-on-horizon",
+        "a formula that says less of earlier timepoints at a longer horizon",
+        find_horizon_dependences}}};
   return kRules;
 }
 

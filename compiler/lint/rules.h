@@ -21,6 +21,13 @@ void find_unused_labels(const LintContext& context);
 void find_completions_without_axiom(const LintContext& context);
 void find_predicates_not_completed(const LintContext& context);
 
+// completion_rules.cc
+void find_invented_predicates(const LintContext& context);
+void find_repeated_completions(const LintContext& context);
+
+// horizon_rule.cc
+void find_horizon_dependences(const LintContext& context);
+
 // contradiction.cc
 void find_impossible_conditions(const LintContext& context);
 

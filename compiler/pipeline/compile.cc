@@ -345,7 +345,12 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
   check.old_reasoner = input.ground.meaning == Meaning::kDecreasoner;
   auto typed = check_model(*ast, files, sink, check);
   if (!typed) return sink.already_reported();
-  if (input.lint) lint_model(lint_rules(), *ast, *typed, sink);
+  const bool is_property = !input.constraints.empty() && input.constraints.front().negated;
+  if (input.lint) {
+    lint_model(lint_rules(), *ast, *typed, sink);
+  } else if (is_property) {
+    lint_model(horizon_rules(), *ast, *typed, sink);
+  }
   lint_model(difference_rules(), *ast, *typed, sink);
 
   // Constraints and the plan are independent: report the errors of both.
@@ -370,16 +375,18 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
     return sink.already_reported();
 
   PassLog log{input.emit_pass, &files};
-  auto ground = ground_model(*typed, input.ground, sink, &log);
+  auto ground_options = input.ground;
+  ground_options.lint = input.lint;
+  auto ground = ground_model(*typed, ground_options, sink, &log);
   if (!ground) return sink.already_reported();
   FormulaGrounder grounder(*ground, input.ground, sink);
-  const bool is_property = !constraints->empty() && constraints->front().violated;
-  const auto running = is_property ? RunningAtoms::kEverywhere : RunningAtoms::kAtHorizon;
+  const bool is_temporal = !constraints->empty() && constraints->front().violated;
+  const auto running = is_temporal ? RunningAtoms::kEverywhere : RunningAtoms::kAtHorizon;
   if (plan &&
       !encode_plan(plan->graph, plan->formulas, plan->events, running, *ground, grounder, sink)) {
     return sink.already_reported();
   }
-  if (is_property) {
+  if (is_temporal) {
     if (!encode_violation(constraints->front(), plan.has_value(), *ground, grounder, sink)) {
       return sink.already_reported();
     }

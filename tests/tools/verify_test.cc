@@ -37,6 +37,82 @@ TEST_CASE("verify: a property of the start is violated without a step") {
   CHECK(answer["performed"].empty());
 }
 
+/// In each trace Up() holds from 0 on: Tick() happens at 0 and 1, and where it happens Up() holds.
+const char* const kTicking =
+    "range time 0 2\nfluent Up()\nevent Tick()\n[time] Happens(Tick(),time).\n"
+    "[time] Happens(Tick(),time) -> HoldsAt(Up(),time).\n";
+
+TEST_CASE("verify: what only a prefix that cannot go on violates is no violation") {
+  const CliFixture cli;
+  cli.write("tick.e", kTicking);
+  for (const std::string property :
+       {"HoldsAt(Up(),time)", "always HoldsAt(Up(),time)", "historically HoldsAt(Up(),time)"}) {
+    CAPTURE(property);
+    const auto answer = json_of(cli, {"verify", "tick.e", "--property", property}, 0);
+    CHECK(answer["verdict"] == "holds");
+    CHECK(answer["proof"] == "checked");
+    CHECK(answer["dead_end"] == 0);
+  }
+  const auto result = cli.parallax({"verify", "tick.e", "--property", "HoldsAt(Up(),time)"});
+  CHECK(result.out == "holds up to horizon 2 (proof checked)\n");
+  CHECK(result.err.find("a prefix that cannot go on violates the property at timepoint 0") !=
+        std::string::npos);
+  // A violation that goes on is one.
+  CHECK(json_of(cli, {"verify", "tick.e", "--property", "!HoldsAt(Up(),time)"}, 1)["timepoint"] ==
+        0);
+}
+
+TEST_CASE("verify: a model whose prefixes all end before the horizon has no execution") {
+  const CliFixture cli;
+  cli.write("stuck.e",
+            "range time 0 2\nfluent Up()\nevent Tick()\n[time] Terminates(Tick(),Up(),time).\n"
+            "[time] Happens(Tick(),time) -> HoldsAt(Up(),time).\n[time] Happens(Tick(),time).\n");
+  const auto result = cli.parallax({"verify", "stuck.e", "--property", "HoldsAt(Up(),time)"});
+  CHECK(result.code == 3);
+  CHECK(result.err.find("error[E7001]") != std::string::npos);
+  const auto until = json_of(cli, {"traces", "stuck.e", "--until", "HoldsAt(Up(),time)"}, 0);
+  CHECK(until["traces"] == 0);
+  CHECK(until["complete"] == true);
+  CHECK(until["dead_end"] == 0);
+  const auto best = cli.parallax({"traces", "stuck.e", "--until", "HoldsAt(Up(),time)", "--best",
+                                  "--minimize", "count Happens(Tick(),time)"});
+  CHECK(best.out.starts_with("0 traces"));
+}
+
+TEST_CASE("verify: horizons give one answer about a timepoint") {
+  const CliFixture cli;
+  cli.write("warm.e",
+            "fluent Warm()\nevent Heat()\nevent Bell()\n[time] Initiates(Heat(),Warm(),time).\n"
+            "!HoldsAt(Warm(),0).\n[time] Happens(Heat(),time) -> time=0.\n"
+            "Happens(Heat(),0) -> Happens(Bell(),2).\n");
+  const auto asked = [&](const std::string& horizon) {
+    return cli.parallax({"verify", "warm.e", "--horizon", horizon, "--property",
+                         "!(HoldsAt(Warm(),time) & previously previously (0=0))"});
+  };
+  const auto shorter = asked("2");
+  CHECK(shorter.code == 3);
+  CHECK(shorter.err.find("error[E3004]") != std::string::npos);
+  CHECK(shorter.err.find("--horizon 3") != std::string::npos);
+  CHECK(asked("3").out.starts_with("violated at timepoint 2\n"));
+  CHECK(asked("4").out.starts_with("violated at timepoint 2\n"));
+}
+
+TEST_CASE("verify: a formula about this horizon alone is told with its place") {
+  const CliFixture cli;
+  cli.write("some.e",
+            "range time 0 2\nfluent F()\nevent E()\n[time] Initiates(E(),F(),time).\n"
+            "{time} Happens(E(),time).\n");
+  const auto result = cli.parallax({"verify", "some.e", "--property", "HoldsAt(F(),time)"});
+  CHECK(result.err.find("some.e:5:1-25: warning[W2162]") != std::string::npos);
+  CHECK(cli.parallax({"traces", "some.e"}).err.find("W2162") == std::string::npos);
+  cli.write("loop.e",
+            "range time 0 1\nfluent F()\nevent E()\nevent G()\n[time] Initiates(E(),F(),time).\n"
+            "[time] Happens(E(),time) -> Happens(G(),time).\n"
+            "[time] Happens(G(),time) -> Happens(E(),time).\ncompletion Happens\n");
+  const auto checked = cli.parallax({"check", "loop.e"});
+  CHECK(checked.err.find("loop.e:6:1-46: warning[W3060]") != std::string::npos);
+}
+
 TEST_CASE("verify: holds to the end of the plan, or up to the horizon only") {
   const CliFixture cli;
   const auto result = cli.parallax(

@@ -151,6 +151,76 @@ TEST_CASE("built-in foundations are not looked at") {
             .empty());
 }
 
+TEST_CASE("a precondition that a completion takes for a reason") {
+  const std::string facts =
+      "event Go(a,a)\npredicate Near(a,a)\nNear(A,B).\n"
+      "[a1,a2,time] Initiates(Go(a1,a2),F(a2),time).\n";
+  const std::string needs = "[a1,a2,time] Happens(Go(a1,a2),time) -> Near(a1,a2).\n";
+  CHECK(only("W2160", facts + needs + "completion Near\n") == Strings{"W2160 13:1-54"});
+  CHECK(only("W2160", facts + "[a1,a2,time] !Near(a1,a2) -> !Happens(Go(a1,a2),time).\n"
+                              "completion Near\n")
+            .size() == 1);
+  // Nothing is invented: the completion is over the facts alone, or there is none, or the rest of
+  // the formula stands beside it.
+  const auto labelled = [&](const std::string& label) {
+    return "event Go(a,a)\npredicate Near(a,a)\nTheta: Near(A,B).\n"
+           "[a1,a2,time] Initiates(Go(a1,a2),F(a2),time).\n" +
+           label + needs + "completion Theta Near\n";
+  };
+  CHECK(only("W2160", labelled("")).empty());
+  CHECK(only("W2160", labelled("Theta: ")).size() == 1);
+  CHECK(only("W2160", facts + needs).empty());
+  CHECK(only("W2160", facts + "[a1,a2] Near(a1,a2) -> Near(a2,a1).\ncompletion Near\n").empty());
+  // What events alone bring about is defined by them.
+  CHECK(only("W2160",
+             "predicate Seen(a)\n[a,time] Happens(Up(a),time) -> Seen(a).\ncompletion Seen\n")
+            .empty());
+}
+
+TEST_CASE("a predicate that is completed twice") {
+  const std::string reasons = "Delta: Happens(Up(A),0).\nGamma: Happens(Down(A),1).\n";
+  CHECK(only("W2161", reasons + "completion Delta Happens\ncompletion Gamma Happens\n") ==
+        Strings{"W2161 12:1-25"});
+  CHECK(only("W2161", reasons + "completion Happens\ncompletion Happens\n").size() == 1);
+  CHECK(only("W2161", reasons + "predicate P(a)\nGamma: P(A).\ncompletion Delta Happens\n"
+                                "completion Gamma P\n")
+            .empty());
+}
+
+TEST_CASE("formulas that take back what they say when the horizon grows") {
+  const auto depends = [](const std::string& more) { return only("W2162", more).size() == 1; };
+  CHECK(depends("{time} Happens(Up(A),time).\n"));
+  CHECK(depends("[time] HoldsAt(F(A),time) -> {time1} time1>time & HoldsAt(F(B),time1).\n"));
+  CHECK(depends("[time] HoldsAt(F(A),time) -> {time1} time1=time+1 & HoldsAt(F(B),time1).\n"));
+  CHECK(depends("[time] HoldsAt(F(A),time) -> {time1} time1<=time & Happens(Up(B),time1).\n"));
+  CHECK(depends("[time] HoldsAt(F(A),time) <-> {time1} Happens(Up(B),time1).\n"));
+  CHECK(depends("{time} time=3 & Happens(Up(A),time).\n"));
+  CHECK(
+      depends("sort n: integer\nrange n 0 2\n"
+              "[time] HoldsAt(F(A),time) -> {n} HoldsAt(F(B),time+n).\n"));
+  CHECK(depends("[time] ([time1] HoldsAt(F(A),time1)) -> HoldsAt(F(B),time).\n"));
+  CHECK(depends("[time] HoldsAt(F(A),time+2) -> Initiates(Up(B),F(B),time).\n"));
+  CHECK(depends("[time] HoldsAt(F(A),time+2) -> Happens(Up(B),time).\ncompletion Happens\n"));
+  CHECK(depends("predicate Ever(a)\n[a,time] Happens(Up(a),time) -> Ever(a).\ncompletion Ever\n"));
+  for (const std::string stays :
+       {"[time] HoldsAt(F(A),time) -> {a} Happens(Up(a),time).\n",
+        "[time] HoldsAt(F(A),time) -> Happens(Up(B),time+1).\n",
+        "[time] HoldsAt(F(A),time) -> HoldsAt(F(B),time+2).\n",
+        "[time] HoldsAt(F(A),time) -> {time1} time1<time & Happens(Up(B),time1).\n",
+        "[time] HoldsAt(F(A),time) -> {time1} time1<=time & HoldsAt(F(B),time1).\n",
+        "[time] Happens(Up(A),time) -> {time1} time1<=time & Happens(Up(B),time1).\n",
+        "[time] Happens(Up(A),time) -> {time1} time1=time+1 & HoldsAt(F(B),time1).\n",
+        "{time} time=2 & Happens(Up(A),time).\n", "{time} time<=3 & HoldsAt(F(A),time).\n",
+        "[time1,time2] Happens(Up(A),time1) & Happens(Up(A),time2) -> time1=time2.\n",
+        "[time] HoldsAt(F(A),time+1) -> Initiates(Up(B),F(B),time).\n",
+        "[time] HoldsAt(F(A),time) -> Happens(Up(B),time).\ncompletion Happens\n",
+        "[time] Happens(Up(A),time) -> Happens(Up(B),time+1).\ncompletion Happens\n",
+        "Happens(Up(A),2).\n"}) {
+    CAPTURE(stays);
+    CHECK(!depends(stays));
+  }
+}
+
 TEST_CASE("every code of the rules is in their tables and is produced above") {
   std::set<std::string> expected, listed;
   for (const auto& info : base::all_diagnostics()) {
