@@ -50,8 +50,7 @@ class HorizonRule {
     for (const auto& effect : model_.effects) {
       if (context_.built_in(effect.source)) continue;
       reset();
-      look(effect.condition, true, true);
-      if (why_.empty()) look_at_effect(effect);
+      look_at_effect(effect);
       report(effect.source);
     }
   }
@@ -218,9 +217,10 @@ class HorizonRule {
   }
 
   /// One more instance would be one more way to be true: can there be one behind the horizon?
-  /// `variables`: those of the instances; `everything`: atoms without them count as well.
-  void look_at_ways(const std::vector<VariableId>& variables, TypedFormulaId body, bool wanted,
-                    bool everything) {
+  /// `variables`: those of the instances; `everything`: atoms without them count as well, but for
+  /// `head`. Gives the bounds inside.
+  Bounds look_at_ways(const std::vector<VariableId>& variables, TypedFormulaId body, bool wanted,
+                      bool everything, std::optional<TypedFormulaId> head = std::nullopt) {
     std::vector<const TypedFormula*> comparisons;
     conjuncts(body, wanted, comparisons);
     const auto bounds = bounded_by(comparisons, outer_);
@@ -228,16 +228,17 @@ class HorizonRule {
       if (!is_time(model_.variables[variable].sort) || bounds.within.contains(variable.index()))
         continue;
       why_ = "`" + name(variable) + "` goes through all timepoints up to it";
-      return;
+      return bounds;
     }
     // Quantifiers below are looked at by themselves.
     std::vector<TypedFormulaId> todo = {body};
     while (!todo.empty() && why_.empty()) {
-      const auto& formula = model_.formulas[todo.back()];
+      const auto id = todo.back();
+      const auto& formula = model_.formulas[id];
       todo.pop_back();
       if (formula.kind == FormulaKind::kExists || formula.kind == FormulaKind::kForall) continue;
       todo.insert(todo.end(), formula.children.begin(), formula.children.end());
-      if (formula.kind != FormulaKind::kAtom) continue;
+      if (formula.kind != FormulaKind::kAtom || head == id) continue;
       bool event = false;
       const auto time = time_of(formula, event);
       if (!time || !(everything || mentions(*time, variables))) continue;
@@ -245,6 +246,7 @@ class HorizonRule {
         why_ = "`" + context_.text(formula.source) + "` may speak of a timepoint behind it";
       }
     }
+    return bounds;
   }
 
   /// Notes which variables the instances of a quantifier leave, if all its atoms are to exist.
@@ -276,7 +278,7 @@ class HorizonRule {
     const bool exists = formula.kind == FormulaKind::kExists;
     if (exists || formula.kind == FormulaKind::kForall) {
       const auto body = formula.children[0];
-      if (exists ? positive : negative) look_at_ways(formula.variables, body, exists, false);
+      if (exists ? positive : negative) (void)look_at_ways(formula.variables, body, exists, false);
       const auto outside = outer_;
       outer_ = inside(formula.variables, body);
       look(body, positive, negative);
@@ -308,7 +310,8 @@ class HorizonRule {
       const std::vector<VariableId> one = {variable};
       if (!mentions(effect.event, one) && !mentions(effect.fluent, one)) others.push_back(variable);
     }
-    look_at_ways(others, effect.condition, true, true);
+    outer_ = look_at_ways(others, effect.condition, true, true);
+    look(effect.condition, true, true);
   }
 
   /// What a completed predicate has for reasons is where the rest of the formula holds and exists.
@@ -339,7 +342,8 @@ class HorizonRule {
           outer_.within.insert(variable.index());
         if (!in_head) others.push_back(variable);
       }
-      look_at_ways(others, body, false, true);
+      outer_ = look_at_ways(others, body, false, true, id);
+      look(body, true, true);
     }
   }
 

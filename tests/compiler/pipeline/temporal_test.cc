@@ -178,7 +178,7 @@ bool has_dead_end(const std::string& model, int length) {
 TEST_CASE("state properties and goals are answered for traces that reach the horizon") {
   FuzzRandom random(41);
   int violated = 0, held = 0, dead = 0, goals = 0, told = 0;
-  for (int round = 0; round < 150; ++round) {
+  for (int round = 0; round < 500; ++round) {
     const auto model = random_temporal_model(random);
     CAPTURE(model);
     const auto traces = all_traces(model, kHorizon);
