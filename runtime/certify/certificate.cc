@@ -23,6 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The clauses of the plan at timepoint t, 1 .. horizon, hold; numbered as a session does.
+Literal plan_reaches(const CompiledModel& model, const LengthVariables& lengths, Timepoint t) {
+  PARALLAX_REQUIRE(!model.plan.empty(), "a model with a plan");
+  return Literal::positive(lengths.last() + t);
+}
+
 base::Reported not_writable(const fs::path& path, int error, base::DiagnosticSink& sink) {
   return sink.error_about(codes::kFileNotWritable, path.string(),
                           std::strerror(error != 0 ? error : EIO));
@@ -149,6 +155,7 @@ CompletenessClaim::CompletenessClaim(const CompiledModel& model)
       lengths_(model),
       index_(model),
       variables_(model.has_constraints ? lengths_.last() : model.variable_count()) {
+  if (model.has_constraints && !model.plan.empty()) variables_ += model.horizon;
   model.for_each_atom([&](const compiler::AtomRef& atom) {
     const auto kind = atom.kind;
     const bool result = kind == AtomKind::kResult && model.has_constraints;
@@ -187,11 +194,29 @@ void CompletenessClaim::add(const Trace& trace) {
 std::vector<Literal> CompletenessClaim::given() const {
   std::vector<Literal> literals;
   for (Timepoint t = 1; t <= model_.horizon; ++t) literals.push_back(lengths_.reaches(t));
+  for (Timepoint t = 1; t <= model_.horizon; ++t) {
+    if (model_.has_constraints || model_.plan.empty()) break;
+    literals.push_back(plan_reaches(model_, lengths_, t));
+  }
   return literals;
 }
 
+/// Those of a plan are guarded: behind a trace's end the plan is not followed any more.
 void CompletenessClaim::visit_model(const Visit& visit) const {
-  for (std::size_t i = 0; i < model_.clauses.size(); ++i) visit(model_.clauses[i]);
+  std::vector<Literal> guarded;
+  for (std::size_t i = 0; i < model_.clauses.size(); ++i) {
+    const auto t = model_.clause_timepoints[i];
+    const auto kind = model_.origins[model_.clause_origins[i]].kind;
+    const bool of_plan = kind == compiler::OriginKind::kPlanStep && !model_.plan.empty() && t > 0 &&
+                         model_.has_constraints && !model_.clause_is_definition[i];
+    if (!of_plan) {
+      visit(model_.clauses[i]);
+      continue;
+    }
+    guarded.assign(model_.clauses[i].begin(), model_.clauses[i].end());
+    guarded.push_back(~plan_reaches(model_, lengths_, t));
+    visit(guarded);
+  }
 }
 
 /// Where a trace ends, at n, the constraints hold, and at no earlier timepoint (0 counts if it has
@@ -201,6 +226,9 @@ void CompletenessClaim::visit_end(Timepoint n, const Visit& visit) const {
     const Literal clause[] = {~lengths_.ends(n), consequence};
     visit(clause);
   };
+  for (Timepoint t = 1; t <= n && !model_.plan.empty(); ++t) {
+    imply(plan_reaches(model_, lengths_, t));
+  }
   for (Timepoint t = 0; t <= n; ++t) {
     const auto hit = index_.hit(t);
     PARALLAX_REQUIRE(hit.has_value() || t == 0, "every timepoint from 1 has its hit atom");
@@ -214,6 +242,9 @@ void CompletenessClaim::visit_going_on(const Visit& visit) const {
     const Literal clause[] = {~lengths_.goes_on(), consequence};
     visit(clause);
   };
+  for (Timepoint t = 1; t <= model_.horizon && !model_.plan.empty(); ++t) {
+    imply(plan_reaches(model_, lengths_, t));
+  }
   for (Timepoint t = 0; t <= model_.horizon; ++t) {
     if (const auto hit = index_.hit(t)) imply(~*hit);
   }

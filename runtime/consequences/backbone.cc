@@ -73,7 +73,7 @@ class BackboneSearch {
   }
 
   void note(Timepoint n) {
-    session_.require_model(session_.model().horizon);
+    session_.require_model(n);
     any_ = true;
     for (std::size_t i = 0; i < atoms_.size(); ++i) {
       if (needed_[i] > n) continue;

@@ -83,42 +83,51 @@ void PlanEnumerator::prepare_orders(Timepoint n) {
   for (const auto& [what, literal] : results) key_order_.push_back(literal);
 }
 
-/// `assumptions` and, in their order, the literals of a valuation with this horizon, which the
-/// session holds. None: the solver was stopped.
+/// `assumptions` and, in their order, the literals of a valuation up to n_, which the session
+/// holds. None: the solver was stopped.
 std::optional<std::vector<Literal>> PlanEnumerator::settle(const std::vector<Literal>& assumptions,
-                                                           const std::vector<Literal>& searched,
-                                                           Timepoint horizon) {
+                                                           const std::vector<Literal>& searched) {
   auto fixed = assumptions;
   for (const auto* order : {&key_order_, &start_order_, &state_order_, &choice_order_}) {
     // Which key it is, is asked of representatives, unless the first is wanted, which need not be
     // the first of those; what belongs to the key, of all.
     const bool first = options_.order == TraceOrder::kCanonical && !options_.representatives;
     const auto& under = order == &key_order_ && !first ? searched : fixed;
-    const auto found = in_order(*session_, horizon, under, *order, options_.order);
+    const auto found = in_order(*session_, n_, under, *order, options_.order);
     if (!found) return std::nullopt;
     fixed.insert(fixed.end(), found->literals.begin(), found->literals.end());
   }
   return fixed;
 }
 
-/// The next trace of length n_ as `settle` makes it, in a valuation of the whole horizon. It is
-/// looked for among prefixes, which are cheaper: the first prefix that goes on is the first trace.
+/// The next trace of length n_ as `settle` makes it. It is looked for among prefixes, which are
+/// cheaper: the first one that the model can continue to its horizon is the first trace. What keeps
+/// another from going on is learned as a clause.
 SolveStatus PlanEnumerator::find_settled(const std::vector<Literal>& assumptions,
                                          const std::vector<Literal>& searched,
                                          std::vector<Literal>& fixed) {
-  const auto horizon = session_->model().horizon;
   auto status = session_->solve(n_, searched);
-  if (status != SolveStatus::kSatisfiable) return status;
-  auto settled = settle(assumptions, searched, n_);
-  if (!settled) return SolveStatus::kUnknown;
-  if (n_ < horizon) status = session_->solve(horizon, *settled);
-  if (status == SolveStatus::kUnsatisfiable) {
-    status = session_->solve(horizon, searched);
-    if (status == SolveStatus::kSatisfiable) settled = settle(assumptions, searched, horizon);
+  for (bool known = false; status == SolveStatus::kSatisfiable; known = true) {
+    const auto settled = settle(assumptions, searched);
     if (!settled) return SolveStatus::kUnknown;
-    if (status == SolveStatus::kUnsatisfiable && !dead_end_) dead_end_ = n_;
+    status = session_->solve_whole(n_, *settled);
+    if (status != SolveStatus::kUnsatisfiable) {
+      fixed = *settled;
+      return status;
+    }
+    std::vector<Literal> dead;
+    for (const auto literal : *settled) {
+      if (session_->failed(literal)) dead.push_back(~literal);
+    }
+    if (!known || options_.order != TraceOrder::kCanonical) {
+      status = session_->solve_whole(n_, searched);
+      if (status == SolveStatus::kUnsatisfiable && !dead_end_) dead_end_ = n_;
+      if (status != SolveStatus::kSatisfiable) return status;
+    }
+    session_->add_clause(dead);
+    // In any order the valuation at hand does.
+    if (options_.order == TraceOrder::kCanonical) status = session_->solve(n_, searched);
   }
-  fixed = *std::move(settled);
   return status;
 }
 

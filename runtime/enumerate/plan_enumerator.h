@@ -82,8 +82,7 @@ class PlanEnumerator {
   void note_alternatives(std::span<const Literal> fixed, std::size_t length, Trace& trace);
   std::vector<Literal> hit_at(Timepoint n) const;
   std::optional<std::vector<Literal>> settle(const std::vector<Literal>& assumptions,
-                                             const std::vector<Literal>& searched,
-                                             Timepoint horizon);
+                                             const std::vector<Literal>& searched);
   SolveStatus find_settled(const std::vector<Literal>& assumptions,
                            const std::vector<Literal>& searched, std::vector<Literal>& fixed);
   void prepare_orders(Timepoint n);

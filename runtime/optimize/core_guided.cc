@@ -77,7 +77,7 @@ SolveStatus CoreGuidedSearch::solve(std::span<const Literal> softs) {
   assumptions.insert(assumptions.end(), softs.begin(), softs.end());
   const auto status = session_.solve_whole(n_, assumptions);
   if (status == SolveStatus::kSatisfiable) {
-    session_.require_model(session_.model().horizon);
+    session_.require_model(n_);
     note_();
     const auto value =
         objective_value(*objective_, n_, [&](Literal literal) { return session_.value(literal); });

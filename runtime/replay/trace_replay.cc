@@ -117,7 +117,11 @@ ReplayVerdict TraceReplay::replay(const ClaimedTrace& trace) {
   ReplayVerdict verdict;
   auto status = solve(units, length, hits);
   const bool goes_this_far = status == SolveStatus::kSatisfiable;
-  if (goes_this_far && length < model_->horizon) status = solve(units, model_->horizon, hits);
+  if (goes_this_far) {
+    auto assumptions = hits;
+    for (const auto& unit : units.said) assumptions.push_back(unit.literal);
+    status = session_.solve_whole(length, assumptions);
+  }
   if (status == SolveStatus::kSatisfiable) {
     verdict.kind = Kind::kAgrees;
     verdict.completion = decode_trace(*model_, symbols_, length,

@@ -14,6 +14,10 @@ SolverSession::SolverSession(const CompiledModel& model, std::unique_ptr<SatSolv
       loading_(loading) {
   PARALLAX_REQUIRE(!model.folded, "a model with all copies of its clauses");
   for (Timepoint t = 1; t <= model.horizon; ++t) guards_.push_back(lengths_.reaches(t));
+  // Behind them, if there is a plan, those of its clauses.
+  for (Timepoint t = 1; t <= model.horizon && !model.plan.empty(); ++t) {
+    guards_.push_back(Literal::positive(++variable_count_));
+  }
   values_.resize(static_cast<std::size_t>(model.variable_count()));
   if (loading_ == Loading::kWhole) load(model.horizon);
 }
@@ -67,7 +71,10 @@ void SolverSession::load_clause(std::size_t clause) {
   for (const auto literal : literals) scratch_.push_back(in_solver(literal));
   // A definition of an auxiliary is harmless at any horizon.
   if (t > 0 && !model_->clause_is_definition[clause] && loading_ != Loading::kWitness) {
-    scratch_.push_back(~in_solver(guards_[static_cast<std::size_t>(t) - 1]));
+    const auto kind = model_->origins[model_->clause_origins[clause]].kind;
+    const bool of_plan = kind == compiler::OriginKind::kPlanStep && !model_->plan.empty();
+    const auto first = of_plan ? static_cast<std::size_t>(model_->horizon) : 0;
+    scratch_.push_back(~in_solver(guards_[first + static_cast<std::size_t>(t) - 1]));
   }
   solver_->add_clause(scratch_);
 }
@@ -97,12 +104,21 @@ void SolverSession::load(Timepoint n) {
 }
 
 SolveStatus SolverSession::solve(Timepoint n, std::span<const Literal> assumptions) {
+  return solve(n, n, assumptions);
+}
+
+/// `n`: how far the model goes; `plan`: and how far its plan.
+SolveStatus SolverSession::solve(Timepoint n, Timepoint plan,
+                                 std::span<const Literal> assumptions) {
   load(std::min(n, model_->horizon));
   PARALLAX_REQUIRE(loading_ != Loading::kWitness || n == model_->horizon,
                    "without guards there is one horizon");
   for (Timepoint t = 1; t <= loaded_ && loading_ != Loading::kWitness; ++t) {
     const auto guard = in_solver(guards_[static_cast<std::size_t>(t) - 1]);
     solver_->assume(t <= n ? guard : ~guard);
+    if (model_->plan.empty()) continue;
+    const auto of_plan = in_solver(guards_[static_cast<std::size_t>(model_->horizon + t) - 1]);
+    solver_->assume(t <= plan ? of_plan : ~of_plan);
   }
   for (const auto literal : assumptions) solver_->assume(in_solver(literal));
   if (limit_) solver_->limit_conflicts(*std::exchange(limit_, std::nullopt));
@@ -122,7 +138,7 @@ SolveStatus SolverSession::solve_whole(Timepoint n, std::span<const Literal> ass
   const auto status = solve(n, assumptions);
   if (status != SolveStatus::kSatisfiable) return status;
   limit_ = limit;
-  return solve(model_->horizon, assumptions);
+  return solve(model_->horizon, n, assumptions);
 }
 
 void SolverSession::require_model(Timepoint n) const {

@@ -64,7 +64,8 @@ class SolverSession {
   void add_clause(std::span<const Literal> clause);
   /// Is there a valuation with horizon `n` under these assumptions? `values()` has it afterwards.
   SolveStatus solve(Timepoint n, std::span<const Literal> assumptions);
-  /// The same for a valuation up to `n` that goes on to the model's horizon. Two calls where there
+  /// The same for a valuation up to `n` that the model, without its plan, can continue to its
+  /// horizon: where a trace has ended nobody performs the rest of the plan. Two calls where there
   /// is one: the first, which only needs the clauses up to `n`, refutes most of what can be
   /// refuted.
   SolveStatus solve_whole(Timepoint n, std::span<const Literal> assumptions);
@@ -86,6 +87,7 @@ class SolverSession {
   Timepoint loaded() const { return loaded_; }
 
  private:
+  SolveStatus solve(Timepoint n, Timepoint plan, std::span<const Literal> assumptions);
   void load_clause(std::size_t clause);
   void sort_by_timepoint();
   Literal in_solver(Literal literal);
@@ -94,7 +96,7 @@ class SolverSession {
   LengthVariables lengths_;
   std::int32_t variable_count_ = 0;
   Loading loading_;
-  std::vector<Literal> guards_;  // by timepoint - 1
+  std::vector<Literal> guards_;  // by timepoint - 1; of clauses of a plan horizon places later
   std::vector<bool> values_;     // by variable - 1
   Timepoint loaded_ = -1;
   std::vector<std::vector<std::uint32_t>> clauses_at_;  // by timepoint; filled when first needed
