@@ -65,7 +65,9 @@ std::string gated(std::string_view text, bool commands, bool colors) {
   out.reserve(text.size());
   bool at_start = true;  // of a line, but for blanks
   while (!text.empty()) {
-    if (const auto plain = at_start ? 0 : plain_length(text); plain > 0) {
+    const auto plain = at_start ? std::min(text.find_first_not_of(' '), text.size())  // indentation
+                                : plain_length(text);
+    if (plain > 0) {
       out.append(text.substr(0, plain));
       text.remove_prefix(plain);
       continue;

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "compiler/base/json.h"
+#include "compiler/base/shown_text.h"
 #include "compiler/ground/expansion_size.h"
 
 namespace parallax::compiler {
@@ -93,7 +94,7 @@ class CostCounter {
 std::string place_of(const AxiomCost& cost, const base::SourceFiles& files) {
   if (cost.source.end == 0) return "-";
   const auto& file = files[cost.source.file];
-  return fmt::format("{}:{}", file.name(), file.position(cost.source.begin).line);
+  return fmt::format("{}:{}", base::printable(file.name()), file.position(cost.source.begin).line);
 }
 
 }  // namespace

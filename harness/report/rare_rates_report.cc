@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/base/json.h"
+#include "compiler/base/shown_text.h"
 #include "harness/confidence/rounding.h"
 #include "harness/report/report.h"
 
@@ -63,8 +64,9 @@ bool has_interval(const RareEventResult& estimate, RareEventMethod method) {
 
 std::string rates_text(const RareRatesResult& result) {
   std::string out = fmt::format(
-      "{}, seed {}; {} compared; intervals with {} confidence by {}: {}\n", result.scenario,
-      result.seed, result.comparison == Comparison::kFinal ? "last states" : "every step",
+      "{}, seed {}; {} compared; intervals with {} confidence by {}: {}\n",
+      base::printable(result.scenario), result.seed,
+      result.comparison == Comparison::kFinal ? "last states" : "every step",
       level_text(result.confidence), to_string(result.method), what_it_rests_on(result));
   for (const RareTraceRate& trace : result.traces) {
     const auto& estimate = trace.estimate;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/base/json.h"
+#include "compiler/base/shown_text.h"
 #include "harness/campaign/run_setup.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/rounding.h"
@@ -50,10 +51,11 @@ std::string known_text(const RateClaim& claim, Evidence evidence) {
 }  // namespace
 
 std::string rates_text(const RatesResult& result) {
-  std::string out = fmt::format(
-      "{}, seed {}; {} compared; intervals with {} confidence ({}{})\n", result.scenario,
-      result.seed, result.comparison == Comparison::kFinal ? "last states" : "every step",
-      level_text(result.confidence), interval_name(result), kSupposition);
+  std::string out =
+      fmt::format("{}, seed {}; {} compared; intervals with {} confidence ({}{})\n",
+                  base::printable(result.scenario), result.seed,
+                  result.comparison == Comparison::kFinal ? "last states" : "every step",
+                  level_text(result.confidence), interval_name(result), kSupposition);
   for (const TraceRates& trace : result.traces) {
     out += fmt::format("\ntrace {}: {} runs, {} starts rejected, {} lost\n  {}\n", trace.number,
                        trace.runs, trace.rejected, trace.lost, trace.trace);

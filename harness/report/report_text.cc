@@ -42,7 +42,7 @@ class TextReport {
   }
 
   void head() {
-    out_ += fmt::format("scenario {}\n", result_.scenario);
+    out_ += fmt::format("scenario {}\n", base::printable(result_.scenario));
     if (!result_.title.empty()) line("about", result_.title);
     const auto& simulator = result_.simulator;
     auto text = fmt::format("{} {}", simulator.name, simulator.version);

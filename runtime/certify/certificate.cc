@@ -12,6 +12,7 @@
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
+#include "compiler/base/shown_text.h"
 #include "runtime/solver/sat_solver.h"
 
 namespace parallax::runtime {
@@ -295,7 +296,7 @@ void CompletenessClaim::write_dimacs(std::ostream& out) const {
       "c First its {} clauses, at the end {} for the traces that were listed.\n",
       model_.horizon, model_.clauses.size(), traces_.size());
   for (const auto& source : model_.sources) {
-    out << fmt::format("c source {} {:016x}\n", source.name, source.hash);
+    out << fmt::format("c source {} {:016x}\n", base::printable(source.name), source.hash);
   }
   for (const auto& observable : observables_) {
     out << fmt::format("c map {} {}({},{})\n", observable.literal.dimacs(),

@@ -281,6 +281,36 @@ TEST_CASE("texts of models, plans, tables and command lines are inert in message
   CHECK(evil.evil() > 30);
 }
 
+TEST_CASE("names of files and folders are inert in what is said of them") {
+  Hostile evil;
+  const auto& cli = evil.cli;
+  for (const char* name : {"wrong_domain.e", "common.yaml", "world.yaml", "wrong.yaml",
+                           "right.yaml", "hasty.lisp", "robot.bind"}) {
+    fs::copy_file(cli.folder() / name, cli.folder() / kEvil / name);
+  }
+  evil.pass_over_inputs();
+  const auto in = [](const std::string& name) { return kEvil + "/" + name; };
+  CHECK(evil.run({"run", in("wrong.yaml"), "--out", in("r")}) == 1);
+  for (const char* command : {"report", "explain", "confirm", "coverage", "draw", "repair"}) {
+    CHECK(evil.run({command, in("r")}) < 2);
+  }
+  evil.run({"coverage", in("r"), "--lcov", in("c.lcov")});
+  evil.run({"rates", in("wrong.yaml"), "--runs", "2"});
+  evil.run({"diff", in("wrong.yaml"), in("right.yaml")});
+  evil.run({"diff", in("domain.e"), in("wrong_domain.e")});
+  evil.run({"compile", in("wrong.yaml"), "--emit=cfg-dot", "-o", in("p.dot")});
+  evil.run({"compile", in("domain.e"), "--horizon", "2", "--stats", "-o", in("d.dec.cnf")});
+  evil.run({"traces", in("d.dec.cnf"), "--limit", "2"});
+  evil.run({"suite", in("wrong.yaml"), "--no-cache", "--out", in("s")});
+  evil.run({"ledger", "add", in("r"), "--ledger", in("l.yaml")});
+  evil.run({"new", in("fresh")});
+  // The name stands in a comment of the formula, which a line end would break.
+  CHECK(evil.run({"traces", in("domain.e"), "--horizon", "1", "--limit", "0",
+                  "--certify=" + in("d.drat")}) == 0);
+  evil.look_at_files();
+  CHECK(evil.evil() > 10);
+}
+
 TEST_CASE("what a simulator says is inert") {
   Hostile evil;
   const auto& cli = evil.cli;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "compiler/base/json.h"
+#include "compiler/base/shown_text.h"
 #include "harness/confidence/rounding.h"
 
 namespace parallax::tools {
@@ -39,11 +40,11 @@ std::string plain(std::string text) {
 std::string uncovered_line(const Entry& entry) {
   const auto& [key, count] = entry;
   const auto& what = count.text.empty() ? key.id : count.text;
-  if (key.group == CoverageGroup::kTraces) return fmt::format("    {}\n", key.id);
+  if (key.group == CoverageGroup::kTraces) return "    " + base::printable(key.id) + '\n';
   std::string why;
   if (count.traces > 0) why = fmt::format("  (in {} of the model's traces)", *count.traces);
   if (count.traces == 0) why = "  (in no trace that was looked at)";
-  return fmt::format("    {}:{}  {}{}\n", key.file, key.line, what, why);
+  return base::printable(fmt::format("    {}:{}  {}{}", key.file, key.line, what, why)) + '\n';
 }
 
 void add_group(const Coverage& coverage, CoverageGroup group, std::string& out) {
@@ -158,7 +159,7 @@ class LcovRecord {
   }
 
   std::string text(const std::string& file) const {
-    auto out = fmt::format("TN:\nSF:{}\n", file);
+    auto out = fmt::format("TN:\nSF:{}\n", base::printable(file));
     std::int64_t hit = 0;
     for (const auto& f : functions_) out += fmt::format("FN:{},{}\n", f.line, f.name);
     for (const auto& f : functions_) {
@@ -220,7 +221,8 @@ std::string coverage_text(const Coverage& coverage) {
   auto out =
       fmt::format("{} run{}, {} simulation{}\n", coverage.runs, coverage.runs == 1 ? "" : "s",
                   coverage.simulations, coverage.simulations == 1 ? "" : "s");
-  for (const auto& scenario : coverage.scenarios) out += fmt::format("  scenario  {}\n", scenario);
+  for (const auto& scenario : coverage.scenarios)
+    out += fmt::format("  scenario  {}\n", base::printable(scenario));
   for (std::size_t i = 0; i < kCoverageGroups.size(); ++i) {
     add_group(coverage, static_cast<CoverageGroup>(i), out);
   }

@@ -222,7 +222,7 @@ std::string side_text(const char* what, const TraceSet& set, const TraceSet& oth
   auto out = fmt::format("{}: {}\n", what, side.count);
   if (!side.witness || stat) return out;
   out += fmt::format("  a shortest such trace of {}, which leaves all of {} at timepoint {}:\n",
-                     set.name, other.name, side.leaves_at);
+                     base::printable(set.name), base::printable(other.name), side.leaves_at);
   return out + to_text(*side.witness);
 }
 

@@ -6,6 +6,7 @@
 
 #include "compiler/base/codes/files.h"
 #include "compiler/base/json.h"
+#include "compiler/base/shown_text.h"
 #include "harness/report/text_layout.h"
 #include "tools/cli/command.h"
 #include "tools/scaffold/scaffold.h"
@@ -56,9 +57,9 @@ int make_new(const NewOptions& options, Invocation& invocation) {
     invocation.document(base::json_text(document) + "\n");
     return 0;
   }
-  std::string text = folder + '\n';
+  std::string text = base::printable(folder) + '\n';
   for (const auto& file : files) text += "  " + file.name + '\n';
-  const auto word = harness::shell_word(scenario);
+  const auto word = base::printable(harness::shell_word(scenario));
   invocation.result(
       fmt::format("{}next\n  parallax check {}\n  parallax run {}\n", text, word, word));
   return 0;

@@ -131,9 +131,10 @@ std::string place_of(const compiler::Origin& origin) {
 
 std::string witness_text(const SideView& side, bool lost) {
   const auto& witness = *side.traces.witness;
-  auto out = fmt::format("  {} such trace of {}, ruled out in {} by timepoint {}:\n",
-                         witness.is_shortest ? "a shortest" : "one", side.kept.name,
-                         side.refused.name, witness.excluded_by);
+  auto out =
+      fmt::format("  {} such trace of {}, ruled out in {} by timepoint {}:\n",
+                  witness.is_shortest ? "a shortest" : "one", base::printable(side.kept.name),
+                  base::printable(side.refused.name), witness.excluded_by);
   out += beginning_text(witness);
   if (witness.impossible) {
     out += fmt::format("    {} is false in every trace of {}\n", *witness.impossible,
@@ -157,13 +158,13 @@ std::string witness_text(const SideView& side, bool lost) {
 std::string side_text(const SideView& side, bool lost, bool stat) {
   switch (side.traces.answer) {
     case Answer::kNone:
-      return fmt::format("  {}: none\n", side.name);
+      return fmt::format("  {}: none\n", base::printable(side.name));
     case Answer::kUnknown:
-      return fmt::format("  {}: unknown\n", side.name);
+      return fmt::format("  {}: unknown\n", base::printable(side.name));
     case Answer::kFound:
       break;
   }
-  auto out = fmt::format("  {}: {}\n", side.name, number_of(side.traces.count));
+  auto out = fmt::format("  {}: {}\n", base::printable(side.name), number_of(side.traces.count));
   return stat ? out : out + witness_text(side, lost);
 }
 
@@ -269,7 +270,8 @@ std::string traces_text(const ModelDifference& difference, bool stat) {
                          names.fluents, names.events);
   const auto only = [&](const ModelRevision& side, const std::vector<std::string>& list) {
     if (list.empty()) return;
-    out += fmt::format("  not compared, as only {} has them: {}\n", side.name, some(list));
+    out += fmt::format("  not compared, as only {} has them: {}\n", base::printable(side.name),
+                       some(list));
   };
   only(difference.old_side, names.only_first);
   only(difference.new_side, names.only_second);
@@ -277,8 +279,8 @@ std::string traces_text(const ModelDifference& difference, bool stat) {
   out += side_text(view(difference, false), false, stat);
   if (traces.first_count && traces.second_count) {
     out += fmt::format("  all: {} in {}, {} in {}\n", number_of(*traces.first_count),
-                       difference.old_side.name, number_of(*traces.second_count),
-                       difference.new_side.name);
+                       base::printable(difference.old_side.name), number_of(*traces.second_count),
+                       base::printable(difference.new_side.name));
   }
   return out;
 }

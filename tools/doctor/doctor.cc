@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "compiler/base/json.h"
+#include "compiler/base/shown_text.h"
 #include "compiler/base/temporary_folder.h"
 #include "tools/app/version.h"
 #include "tools/doctor/build_facts.h"
@@ -96,9 +97,11 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   }
   text += "\n";
   for (const auto& check : diagnosis.checks) {
-    text += fmt::format("  {:<9}  {:<9}  {}\n", check.name, word_for(check), check.found);
+    text += fmt::format("  {:<9}  {:<9}  {}\n", check.name, word_for(check),
+                        base::printable(check.found));
     if (check.health == Health::kWorks) continue;
-    if (!check.remedy.empty()) text += fmt::format("  {:<22} {}\n", "", check.remedy);
+    if (!check.remedy.empty())
+      text += fmt::format("  {:<22} {}\n", "", base::printable(check.remedy));
     if (!check.package.empty()) {
       text += fmt::format("  {:<22} apt-get install {}\n", "", check.package);
     }

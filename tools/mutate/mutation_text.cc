@@ -54,8 +54,9 @@ Numbers all_of(const MutationScore& score) {
 std::string witness(const Judgement& judgement) {
   const auto* whose = judgement.gained ? "of the mutant, which the original has not"
                                        : "of the original, which the mutant has not";
-  return fmt::format("  {} has a trace {} (ruled out by timepoint {}):\n{}", judgement.told_in,
-                     whose, judgement.excluded_by, judgement.trace);
+  return fmt::format("  {} has a trace {} (ruled out by timepoint {}):\n{}",
+                     base::printable(judgement.told_in), whose, judgement.excluded_by,
+                     judgement.trace);
 }
 
 std::string readers(const MutationScore& score) {
@@ -115,7 +116,7 @@ std::string mutation_text(const MutationScore& score) {
   const auto all = all_of(score);
   if (!out.empty()) out += '\n';
   out += readers(score);
-  for (const auto& text : score.passed_over) out += text + '\n';
+  for (const auto& text : score.passed_over) out += base::printable(text) + '\n';
   if (score.mutants.size() < score.made) {
     out += fmt::format("of {} mutants {} were looked at, evenly spread\n", score.made,
                        score.mutants.size());

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "compiler/base/line_diff.h"
+#include "compiler/base/shown_text.h"
 
 namespace parallax::tools {
 
@@ -117,7 +118,8 @@ std::string unified_diff(const std::vector<ChangedFile>& files, const fs::path& 
   const auto top = real_path(folder / patch_folder(files, folder));
   std::string out;
   for (const auto& file : files) {
-    const auto name = real_path(folder / file.name).lexically_relative(top).generic_string();
+    const auto name =
+        base::printable(real_path(folder / file.name).lexically_relative(top).generic_string());
     // git takes what follows a blank for a time, but for a tab.
     const auto* end = name.find(' ') == std::string::npos ? "\n" : "\t\n";
     out += "--- a/" + name + end + "+++ b/" + name + end + hunks(file.before, file.after);

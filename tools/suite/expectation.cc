@@ -8,6 +8,7 @@
 #include <set>
 
 #include "compiler/base/json.h"
+#include "compiler/base/shown_text.h"
 #include "harness/confidence/rate_evidence.h"
 #include "harness/confidence/rounding.h"
 
@@ -212,11 +213,11 @@ std::string blame(std::string_view explanation) {
   const auto told = base::parse_json(explanation);
   const auto sets = member(told, "sets", Json::array());
   if (sets.empty()) return {};
-  auto out = member(sets.front(), "words", "").get<std::string>();
+  auto out = base::printable(member(sets.front(), "words", "").get<std::string>());
   const auto axioms = member(sets.front(), "axioms", Json::array());
   for (std::size_t i = 0; i < std::min(axioms.size(), kShownAxioms); ++i) {
     out += fmt::format("{}  {}:{}  {}: {}", out.empty() ? "" : "\n",
-                       member(axioms[i], "file", "").get<std::string>(),
+                       base::printable(member(axioms[i], "file", "").get<std::string>()),
                        member(axioms[i], "line", 0).get<std::int64_t>(),
                        member(axioms[i], "what", "").get<std::string>(),
                        member(axioms[i], "text", "").get<std::string>());

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <thread>
 
+#include "compiler/base/shown_text.h"
 #include "compiler/base/subprocess.h"
 #include "tools/suite/schedule.h"
 
@@ -36,7 +37,7 @@ std::string line_of(const SuiteCase& one, const CaseResult& result) {
                      : result.outcome == Outcome::kInconclusive ? "OPEN "
                                                                 : "ERROR";
   const auto how = result.reused.empty() ? fmt::format("{:.1f} s", result.wall_s) : result.reused;
-  auto line = fmt::format("{} {} ({})", mark, one.name(), how);
+  auto line = fmt::format("{} {} ({})", mark, base::printable(one.name()), how);
   if (result.flaky()) line += fmt::format(", flaky: passed in attempt {}", result.attempts);
   for (const auto& rate : result.rates) {
     if (rate.fixed || result.outcome != Outcome::kPassed) continue;
@@ -44,7 +45,7 @@ std::string line_of(const SuiteCase& one, const CaseResult& result) {
     break;
   }
   if (!result.golden_written.empty()) {
-    line += "\n       golden file written: " + result.golden_written;
+    line += "\n       golden file written: " + base::printable(result.golden_written);
   }
   std::string details;
   for (const auto& problem : result.problems) details += problem + '\n';

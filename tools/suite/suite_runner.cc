@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compiler/base/json.h"
+#include "compiler/base/shown_text.h"
 #include "harness/config/scenario.h"
 #include "tools/suite/case_process.h"
 #include "tools/suite/expectation.h"
@@ -145,7 +146,7 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
     result.problems = {"the run is inconclusive, and `expect` has no `verdict`"};
   }
   if (result.problems.empty()) return;
-  result.problems.push_back("report: " + (folder / "report.txt").string());
+  result.problems.push_back("report: " + base::printable((folder / "report.txt").string()));
 }
 
 /// One attempt.
