@@ -78,7 +78,7 @@ class JournalReader {
     // Random sequences of events are simulated as traces are, whatever the scenario says.
     const bool is_executed = asked.execution == Execution::kClosedLoop && !asked.random_sequences;
     if (record.path.has_value() != is_executed) {
-      return is_executed ? "it has no `path`, and the run executed a plan"
+      return is_executed ? "`path` is missing, and the run executed a plan"
                          : "it has a `path`, and the run executed no plan";
     }
     if (trace == journal_.traces.end() && !record.path) {

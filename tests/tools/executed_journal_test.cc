@@ -91,7 +91,7 @@ TEST_CASE("a changed journal of an executed plan is refused by all that read it"
                 "it repeats a simulation with other counts of what was drawn", true);
   }
   SUBCASE("a repetition without a path") {
-    cli.refused("\"path\":", "\"way\":", "it has no `path`, and the run executed a plan", true);
+    cli.refused("\"path\":", "\"way\":", "`path` is missing, and the run executed a plan", true);
   }
   SUBCASE("another initial state") {
     const auto journal = cli.read("out/journal.ndjson");
