@@ -98,14 +98,18 @@ int contact_points(dGeomID a, dGeomID b, std::int64_t limit,
   return spread_out(found, count, most, out);
 }
 
-void set_stiffness(const SolverSpec& solver, dSurfaceParameters& surface) {
+void set_stiffness(const SolverSpec& solver, double softening, dSurfaceParameters& surface) {
   if (solver.contact_erp) {
     surface.mode |= dContactSoftERP;
     surface.soft_erp = *solver.contact_erp;
   }
-  if (solver.contact_cfm) {
+  if (solver.contact_cfm || softening > 1.0) {
     surface.mode |= dContactSoftCFM;
-    surface.soft_cfm = *solver.contact_cfm;
+    surface.soft_cfm = softening * solver.contact_cfm.value_or(solver.cfm);
+  }
+  if (softening > 1.0) {  // of friction
+    surface.mode |= dContactSlip1 | dContactSlip2;
+    surface.slip1 = surface.slip2 = softening * solver.cfm;
   }
 }
 
@@ -297,11 +301,11 @@ void find_contacts(OdeWorld::Engine& engine) {
   engine.statistics.contacts += static_cast<std::int64_t>(engine.new_contacts.size());
 }
 
-void attach_contacts(OdeWorld::Engine& engine) {
+void attach_contacts(OdeWorld::Engine& engine, double softening) {
   dContact contact{};
   dSurfaceParameters& surface = contact.surface;
   surface.mode = dContactApprox1;
-  set_stiffness(engine.solver, surface);
+  set_stiffness(engine.solver, softening, surface);
   Hosts& hosts = engine.resting->hosts();
   hosts.expect_contacts(engine.new_contacts.size());
   const auto link_of = [](const GeomInfo& info) {

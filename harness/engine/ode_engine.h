@@ -172,8 +172,14 @@ void set_free_mass(OdeWorld::Engine& engine, BodyId id, double mass_kg);
 /// parts of the robot.
 void find_contacts(OdeWorld::Engine& engine);
 
-/// Makes joints of them, between what moves.
-void attach_contacts(OdeWorld::Engine& engine);
+/// Makes joints of them, between what moves. `softening` multiplies their CFM, that of friction
+/// included.
+void attach_contacts(OdeWorld::Engine& engine, double softening = 1.0);
+
+/// Attaches the contacts and steps the world. A step that the contact solver gives up is taken back
+/// and solved again with softer contacts. `complaints` counts the solver's messages; on return,
+/// those of a step that stayed unsolved.
+void solve_step(OdeWorld::Engine& engine, std::int64_t& complaints);
 
 /// Leaves at most `most` of those contacts between two links (or a link and what never moves) that
 /// have the same normal and friction: those that span the most. Where a flat side lies on another

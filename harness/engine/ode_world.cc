@@ -199,14 +199,15 @@ std::optional<Overlap> OdeWorld::reset(std::span<const Placement> placements, st
 }
 
 bool OdeWorld::step() {
-  const MessageCounter counter(engine_->statistics.engine_messages);
+  std::int64_t complaints = 0;
+  const MessageCounter counter(complaints);
   Stopwatch stopwatch(engine_->measure_times);
   find_contacts(*engine_);
   stopwatch.add_lap_to(engine_->statistics.collide_s);
   engine_->resting->begin_step(engine_->touched);
   carry_out_orders(*this, *engine_);
-  attach_contacts(*engine_);
-  dWorldStep(engine_->world, engine_->solver.timestep_s);
+  solve_step(*engine_, complaints);
+  engine_->statistics.engine_messages += complaints;
   engine_->resting->end_step();
   engine_->statistics.joints_at_rest = engine_->resting->resting();
   stopwatch.add_lap_to(engine_->statistics.solve_s);

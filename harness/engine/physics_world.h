@@ -49,7 +49,8 @@ struct StepStatistics {
   std::int64_t steps = 0;
   std::int64_t contacts = 0;
   std::int64_t joints_at_rest = 0;  // in all steps together: not solved, because nothing moved them
-  std::int64_t engine_messages = 0;  // complaints of the contact solver
+  std::int64_t engine_messages = 0;  // complaints of the contact solver in steps left unsolved
+  std::int64_t solved_again = 0;     // steps that it gave up at first
   double collide_s = 0.0, solve_s = 0.0;
 };
 
