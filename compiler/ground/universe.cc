@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "compiler/base/codes/grounding.h"
+#include "compiler/base/integer_range.h"
 
 namespace parallax::compiler {
 
@@ -189,7 +190,9 @@ bool Universe::add_domain(SortId sort, const TypedModel& model, const GroundOpti
     ++total;
   }
   for (const auto& range : declared.ranges) {
-    for (std::int64_t v = range.lower; v <= range.upper; ++v) domain.push_back(terms.integer(v));
+    for (const auto v : base::IntegerRange(range.lower, range.upper)) {
+      domain.push_back(terms.integer(v));
+    }
   }
   domains_[sort.index()] = std::move(domain);
   if (declared.reified && !add_constructors(sort, model, options, terms, sink)) return false;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "compiler/base/contract.h"
+#include "compiler/base/integer_range.h"
 #include "compiler/reference/model_expander.h"
 
 namespace parallax::compiler {
@@ -70,7 +71,10 @@ void ReferenceTerms::list_domain(SortId sort) {
     if (budget_.spend()) all.push_back(intern(model_.objects[object].name, std::nullopt));
   }
   for (const auto& range : model_.sorts[sort].ranges) {
-    for (auto i = range.lower; i <= range.upper && budget_.spend(); ++i) all.push_back(integer(i));
+    for (const auto i : base::IntegerRange(range.lower, range.upper)) {
+      if (!budget_.spend()) break;
+      all.push_back(integer(i));
+    }
   }
   for (const auto& symbol : model_.symbols) {
     if (symbol.result == sort && symbol.kind != SymbolKind::kFunction) list_instances(symbol, all);

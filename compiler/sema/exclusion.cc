@@ -85,7 +85,7 @@ class Expansion {
 
   TermId variable(const std::string& name, SortId sort) {
     const auto known = std::find_if(variables_.begin(), variables_.end(), [&](VariableId id) {
-      return model_.variables[id].name == name;
+      return model_.variables[id].name == name && model_.variables[id].sort == sort;
     });
     Term term;
     term.kind = TermKind::kVariable;
@@ -98,14 +98,22 @@ class Expansion {
     return model_.terms.add(std::move(term));
   }
 
+  /// Does some symbol of the statement have more than one argument of the sort?
+  bool has_several(SortId sort) const {
+    return std::any_of(symbols_.begin(), symbols_.end(), [&](SymbolId id) {
+      const auto& arguments = model_.symbols[id].arguments;
+      return std::count(arguments.begin(), arguments.end(), sort) > 1;
+    });
+  }
+
+  /// The n-th argument of a sort is the same variable in every symbol (Mueller's encoder of 2005).
   std::vector<TermId> arguments(const Symbol& symbol) {
     std::vector<TermId> terms;
     for (std::size_t i = 0; i < symbol.arguments.size(); ++i) {
       const auto sort = symbol.arguments[i];
       const auto begin = symbol.arguments.begin();
-      const auto same = std::count(begin, symbol.arguments.end(), sort);
       std::string name = model_.sorts[sort].name;
-      if (same > 1) {
+      if (has_several(sort)) {
         const auto before = std::count(begin, begin + static_cast<std::ptrdiff_t>(i), sort);
         name += std::to_string(before + 1);
       }

@@ -9,9 +9,9 @@
 namespace parallax::compiler {
 
 /// Expands `mutex A, B, ...` into `[vars,time] !A(..) | !B(..)` for each pair of different symbols,
-/// and `xor` also into `[vars,time] A(..) | B(..) | ...`. A symbol's argument variables are named
-/// after their sorts, numbered if a sort occurs more than once, and shared between the symbols:
-/// two events of one agent exclude each other, those of two agents do not. `position` is that of
+/// and `xor` also into `[vars,time] A(..) | B(..) | ...`. The n-th argument of a
+/// sort is the same variable in every symbol, also where symbols have different numbers of
+/// arguments: two events of one agent exclude each other, those of two agents do not. `position` is that of
 /// the statement in ModelAst::order.
 void add_exclusion(const Ast& ast, const Statement& statement, std::size_t position,
                    const IgnoredNames& ignored, Elaborator& elaborator, TypedModel& model,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/base/integer_range.h"
 #include "compiler/repair/condition_literal.h"
 #include "harness/region/fluent_binding.h"
 #include "runtime/enumerate/path_admission.h"
@@ -38,8 +39,8 @@ std::vector<std::string> elements_of(const compiler::TypedModel& typed, compiler
     const compiler::SortId below(i);
     if (!typed.is_subsort(below, sort)) continue;
     for (const auto& range : typed.sorts[below].ranges) {
-      for (auto n = range.lower; n <= range.upper && out.size() <= LearnVocabulary::kMostAtoms;
-           ++n) {
+      for (const auto n : base::IntegerRange(range.lower, range.upper)) {
+        if (out.size() > LearnVocabulary::kMostAtoms) break;
         out.push_back(std::to_string(n));
       }
     }
