@@ -63,7 +63,6 @@ std::optional<LogError> CsvLog::split(std::string_view line) {
     auto& cell = cells_.emplace_back();
     cell.column = i + 1;
     if (i < line.size() && line[i] == '"') {
-      cell.quoted = true;
       for (++i;; ++i) {
         if (i >= line.size()) return LogError{cell.column, "a quoted cell does not end"};
         if (line[i] != '"') {

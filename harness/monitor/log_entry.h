@@ -64,8 +64,8 @@ class CsvLog {
   struct Cell {
     std::string text;
     std::size_t column = 1;
-    bool quoted = false;
-    bool says_something() const { return quoted || !text.empty(); }
+    /// An empty cell says nothing, in quotes or not: CSV knows no difference.
+    bool says_something() const { return !text.empty(); }
   };
   std::optional<LogError> split(std::string_view line);
   std::optional<LogError> take(const Cell& cell, const std::string& name,
