@@ -33,6 +33,7 @@ class Assembler {
   void run() {
     while (merge_one()) {
     }
+    hold_massless();
     for (const LinkDescription& link : in_.links) add_body(link);
     for (const JointDescription& joint : in_.joints) add_joint(joint);
     if (in_.has_floor) world_.floor_material = material_of(in_.floor_friction.value_or(1.0));
@@ -67,6 +68,21 @@ class Assembler {
       }
     }
     return false;
+  }
+
+  /// A link without mass that is fixed to the world, or to what stands fast, stands fast itself.
+  void hold_massless() {
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (const JointDescription& joint : in_.joints) {
+        LinkDescription* child = find(joint.child);
+        if (joint.type != JointType::kFixed || child == nullptr) continue;
+        if (child->mass_kg != 0.0 || child->is_static) continue;
+        const LinkDescription* parent = find(joint.parent);
+        if (!joint.parent.empty() && (parent == nullptr || !parent->is_static)) continue;
+        child->is_static = changed = true;
+      }
+    }
   }
 
   bool is_root(const std::string& link) const {
@@ -285,6 +301,16 @@ std::size_t NamePlaces::of(const std::string& tag, const std::string& name) cons
 }
 
 std::size_t NamePlaces::of_message(const std::string& message) const {
+  // libsdformat: "A link named bowl has invalid inertia."
+  constexpr std::string_view kNamed = " named ";
+  if (const auto at = message.find(kNamed); at != message.npos) {
+    const auto begin = at + kNamed.size();
+    for (auto end = message.find_first_of(" .,", begin); end != message.npos;
+         end = message.find_first_of(" .,", end + 1)) {
+      const auto found = by_name_.find(message.substr(begin, end - begin));
+      if (found != by_name_.end()) return found->second;
+    }
+  }
   for (std::size_t i = 0; i < message.size(); ++i) {
     const char open = message[i];
     const char close = open == '[' ? ']' : open;

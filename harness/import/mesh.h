@@ -28,6 +28,7 @@ struct MeshCorners {
   double off = 0.0;              // by which the corners that were left out stand outside
   double volume = 0.0;           // of the mesh, where it is closed; else 0
   double hull_volume = 0.0;
+  bool is_open = false;  // its faces close nothing in
 };
 
 /// What a hull adds to its mesh, or what it loses, where that is worth a word.

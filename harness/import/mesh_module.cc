@@ -33,12 +33,14 @@ MeshCorners faulty(std::string why) {
 struct AnswerHead {
   std::uint64_t fault_bytes = 0, corners = 0, faces = 0, hull_corners = 0;
   double off = 0.0, volume = 0.0, hull_volume = 0.0;
+  std::uint64_t is_open = 0;
 };
 
 std::string answer_of(const MeshCorners& said) {
   const std::string fault = said.fault.value_or("").substr(0, 1000);
   const AnswerHead head{fault.size(), said.corners.size(), said.faces,      said.hull_corners,
-                        said.off,     said.volume,         said.hull_volume};
+                        said.off,     said.volume,         said.hull_volume,
+                        said.is_open ? 1U : 0U};
   std::string bytes(reinterpret_cast<const char*>(&head), sizeof(head));
   bytes += fault;
   if (fault.empty() && !said.corners.empty()) {
@@ -64,6 +66,7 @@ MeshCorners parsed(const std::string& bytes) {
   out.off = head.off;
   out.volume = head.volume;
   out.hull_volume = head.hull_volume;
+  out.is_open = head.is_open != 0;
   out.corners.resize(head.corners);
   if (!rest.empty()) std::memcpy(out.corners.front().data(), rest.data(), rest.size());
   return out;
@@ -115,6 +118,10 @@ std::vector<MeshLoss> losses_of(const MeshCorners& made, const std::string& name
     out.push_back(
         {"hollows of meshes, which become their convex hull",
          fmt::format("{}: {:.2f} times its volume", name, made.hull_volume / made.volume)});
+  }
+  if (made.is_open) {
+    out.push_back({"meshes that are not closed, which become their convex hull, a solid",
+                   fmt::format("{}: a hull of {:.3g} m3", name, made.hull_volume)});
   }
   if (made.off > kOff_m) {
     out.push_back({fmt::format("corners of hulls that have more than {}", kMaxMeshCorners),

@@ -236,7 +236,7 @@ std::optional<std::string> gather(const aiScene& scene, Soup& soup) {
       }
       for (unsigned k = 0; k < mesh.mNumFaces; ++k) {
         const aiFace& face = mesh.mFaces[k];
-        if (face.mNumIndices != 3) continue;  // points and lines
+        if (face.mNumIndices != 3) continue;  // points and lines, which are no surface
         soup.faces.push_back(
             {first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]});
       }
@@ -248,28 +248,53 @@ std::optional<std::string> gather(const aiScene& scene, Soup& soup) {
   return std::nullopt;
 }
 
-/// Has each edge two faces that go round it in opposite ways? By places: files repeat their
-/// corners.
-bool is_closed(const Soup& soup) {
+/// The corners of the faces that have an area: a vertex of lines and points alone is no surface.
+std::vector<Eigen::Vector3d> surface_points(const Soup& soup) {
+  std::vector<bool> used(soup.points.size(), false);
+  for (const Face& face : soup.faces) {
+    const Eigen::Vector3d a = soup.points[face[1]] - soup.points[face[0]],
+                          b = soup.points[face[2]] - soup.points[face[0]];
+    if (a.cross(b).norm() <= 1e-12 * std::max(a.squaredNorm(), b.squaredNorm())) continue;
+    for (const auto corner : face) used[corner] = true;
+  }
+  std::vector<Eigen::Vector3d> out;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (used[i]) out.push_back(soup.points[i]);
+  }
+  return out;
+}
+
+/// How the faces meet. By places: files repeat their corners.
+struct Closure {
+  bool is_closed = true;    // each edge has an even number of faces
+  bool is_oriented = true;  // as many of them go round it one way as the other
+};
+Closure closure_of(const Soup& soup) {
   std::map<std::array<double, 3>, std::uint32_t> number;
   std::vector<std::uint32_t> same;
   for (const auto& p : soup.points) {
     const auto next = static_cast<std::uint32_t>(number.size());
     same.push_back(number.emplace(std::array<double, 3>{p.x(), p.y(), p.z()}, next).first->second);
   }
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  struct Edge {
+    int faces = 0, turns = 0;
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Edge> edges;
   for (const Face& face : soup.faces) {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto a = same[face[i]], b = same[face[(i + 1) % 3]];
       if (a == b) continue;
-      if (a < b) {
-        ++edges[{a, b}];
-      } else {
-        --edges[{b, a}];
-      }
+      Edge& edge = edges[std::minmax(a, b)];
+      ++edge.faces;
+      edge.turns += a < b ? 1 : -1;
     }
   }
-  return std::all_of(edges.begin(), edges.end(), [](const auto& edge) { return edge.second == 0; });
+  Closure out;
+  for (const auto& [ends, edge] : edges) {
+    out.is_closed = out.is_closed && edge.faces % 2 == 0;
+    out.is_oriented = out.is_oriented && edge.turns == 0;
+  }
+  return out;
 }
 
 MeshCorners read_mesh(const std::string& text, const std::string& extension,
@@ -303,12 +328,18 @@ MeshCorners read_mesh(const std::string& text, const std::string& extension,
     return out;
   }
   out.faces = soup.faces.size();
-  if (is_closed(soup)) out.volume = volume_of(soup.points, soup.faces);
-  const HullFaces hull = hull_faces(soup.points);
+  const Closure closure = closure_of(soup);
+  if (closure.is_oriented) out.volume = volume_of(soup.points, soup.faces);
+  const HullFaces hull = hull_faces(surface_points(soup));
   out.fault = hull.fault;
   if (out.fault) return out;
   out.hull_corners = hull.corners.size();
   out.hull_volume = volume_of(hull.corners, hull.faces);
+  // Faces of both sides of a sheet close nothing in, either.
+  constexpr double kNoVolume = 1e-6;
+  out.is_open =
+      !closure.is_closed || (closure.is_oriented && out.volume < kNoVolume * out.hull_volume);
+  if (out.is_open) out.volume = 0.0;
   out.corners = hull.corners;
   if (hull.corners.size() <= kMaxMeshCorners) return out;
   out.corners = chosen_corners(hull.corners, out.off);

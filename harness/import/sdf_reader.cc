@@ -13,6 +13,7 @@
 #include "harness/import/description.h"
 #include "harness/import/plain_path.h"
 #include "harness/import/sdf_module.h"
+#include "harness/import/xml_census.h"
 
 namespace parallax::harness {
 namespace {
@@ -69,6 +70,8 @@ class IncludeGate {
   }
   std::vector<std::string> files() const { return {files_.begin(), files_.end()}; }
   std::vector<std::string> absent() const { return {absent_.begin(), absent_.end()}; }
+  /// The descriptions that are included, each with where the file itself begins to include it.
+  const std::map<std::string, std::size_t>& texts() const { return texts_; }
 
  private:
   std::optional<TextFault> check(const XmlOutline& outline, std::vector<std::string>& around) {
@@ -83,6 +86,7 @@ class IncludeGate {
     for (const XmlElement& element : outline.elements) {
       if (element.tag != "uri" || !element.parent) continue;
       if (outline.elements[*element.parent].tag != "include") continue;
+      if (around.empty()) here_ = element.offset;
       if (auto message = follow(trimmed(element.text), around)) {
         return TextFault{element.offset, *std::move(message)};
       }
@@ -146,6 +150,7 @@ class IncludeGate {
     if (auto message = read(path, text)) return message;
     const XmlOutline outline = outline_of(text);
     if (outline.fault) return fmt::format("`{}`: {}", uri, outline.fault->message);
+    texts_.emplace(text, here_);
     around.push_back(key);
     const auto fault = check(outline, around);
     around.pop_back();
@@ -168,13 +173,57 @@ class IncludeGate {
 
   const std::vector<fs::path>& folders_;
   std::set<std::string> files_, absent_;
+  std::map<std::string, std::size_t> texts_;
+  std::size_t here_ = 0;  // the outermost include
   std::size_t followed_ = 0, elements_ = 0, parts_ = 0;  // of all files together
+};
+
+constexpr std::string_view kPoseKeys = "relative_to frame degrees rotation_format";
+
+/// Values after `=` are the format's own defaults. Names of former versions are among them.
+constexpr TakenOf kTaken[] = {
+    {"sdf", "version", "world model include"},
+    {"world", "name", "gravity", "model include frame", "light actor plugin"},
+    {"include", "merge element_id action", "uri name pose static placement_frame", "", "plugin"},
+    {"model", "name canonical_link placement_frame",
+     "pose static self_collide allow_auto_disable=true enable_wind=false",
+     "link joint model include frame", "plugin"},
+    {"frame", "name attached_to", "pose"},
+    {"pose", kPoseKeys},
+    {"link", "name",
+     "pose inertial gravity=true enable_wind=false self_collide=false kinematic=false "
+     "must_be_base_link=false",
+     "collision", "visual sensor light"},
+    {"inertial", "", "mass pose inertia"},
+    {"inertia", "", "ixx ixy ixz iyy iyz izz"},
+    {"collision", "name", "pose geometry surface max_contacts=10 laser_retro=0"},
+    {"geometry", "", "box sphere cylinder capsule plane mesh", "",
+     "heightmap image polyline ellipsoid empty"},
+    {"box", "", "size"},
+    {"sphere", "", "radius"},
+    {"cylinder", "", "radius length"},
+    {"capsule", "", "radius length"},
+    {"plane", "", "normal size"},  // its size is of a picture: what collides has no end
+    {"mesh", "", "uri scale", "", "submesh"},
+    {"surface", "", "friction"},
+    {"friction", "", "ode"},
+    {"ode", "", "mu slip1=0 slip2=0"},
+    {"joint", "name type", "parent child pose axis"},
+    {"axis", "", "xyz limit dynamics use_parent_model_frame"},
+    {"xyz", "expressed_in"},
+    {"limit", "", "lower upper effort velocity stiffness=1e8 dissipation=1"},
+    {"dynamics", "", "damping friction spring_reference=0 spring_stiffness"},
 };
 
 class SdfReader {
  public:
-  SdfReader(const ImportInput& input, const XmlOutline& outline, ImportedWorld& world)
+  SdfReader(const ImportInput& input, const XmlOutline& outline, ImportedWorld& world,
+            const IncludeGate& gate)
       : input_(input), places_(outline), world_(world) {
+    list_rest(outline, kTaken, std::nullopt, out_.left_out);
+    for (const auto& [text, place] : gate.texts()) {
+      list_rest(outline_of(text), kTaken, place, out_.left_out);
+    }
     X_WI_.translation() = input.p_WI;
     X_WI_.linear() = Eigen::AngleAxisd(input.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   }
@@ -195,7 +244,13 @@ class SdfReader {
     if (root.WorldCount() == 1) {
       read_world(*root.WorldByIndex(0));
     } else if (root.Model() != nullptr) {
-      read_model(*root.Model(), X_WI_, {}, root.Model()->Static(), {});
+      const sdf::Model& model = *root.Model();
+      math::Pose3d pose = model.RawPose();
+      // Of a placement frame the library tells where the model lies, not where the frame does.
+      if (!model.PlacementFrameName().empty()) {
+        leave("placement frames of models that stand in no world", model.Name(), "model");
+      }
+      read_model(model, X_WI_ * isometry_of(pose), {}, model.Static(), {});
     } else {
       return fault(0, "holds neither a world nor a model");
     }
@@ -438,7 +493,7 @@ extern "C" __attribute__((visibility("default"))) bool parallax_read_sdf(const c
   world.files = gate.files();
   world.absent = gate.absent();
   if (world.fault) return true;
-  SdfReader(input, outline, world).run();
+  SdfReader(input, outline, world, gate).run();
   return true;
 }
 

@@ -25,6 +25,7 @@ ImportedWorld import_urdf(const ImportInput& /*input*/) {
 #include <limits>
 
 #include "harness/import/urdf_tree.h"
+#include "harness/import/xml_census.h"
 
 namespace parallax::harness {
 namespace {
@@ -54,6 +55,27 @@ Eigen::Isometry3d isometry_from(const urdf::Pose& pose) {
   X.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
   return X;
 }
+
+constexpr TakenOf kTaken[] = {
+    {"robot", "name version", "", "link joint", "material"},
+    {"link", "name", "inertial", "collision", "visual"},
+    {"inertial", "", "origin mass inertia"},
+    {"origin", "xyz rpy"},
+    {"mass", "value"},
+    {"inertia", "ixx ixy ixz iyy iyz izz"},
+    {"collision", "name", "origin geometry"},
+    {"geometry", "", "box sphere cylinder mesh"},
+    {"box", "size"},
+    {"sphere", "radius"},
+    {"cylinder", "radius length"},
+    {"mesh", "filename scale"},
+    {"joint", "name type", "parent child origin axis limit dynamics", "", "mimic"},
+    {"parent", "link"},
+    {"child", "link"},
+    {"axis", "xyz"},
+    {"limit", "lower upper effort velocity"},
+    {"dynamics", "damping friction"},
+};
 
 class UrdfReader {
  public:
@@ -205,17 +227,7 @@ class UrdfReader {
     out_.joints.push_back(std::move(one));
   }
 
-  /// What the library reads past.
-  void note_rest() {
-    for (const XmlElement& element : outline_.elements) {
-      const bool top = element.parent && !outline_.elements[*element.parent].parent;
-      if (!top || element.tag == "link" || element.tag == "joint" || element.tag == "material") {
-        continue;
-      }
-      out_.left_out.add(fmt::format("elements <{}>", element.tag.substr(0, 40)),
-                        std::string(element.name), element.offset);
-    }
-  }
+  void note_rest() { list_rest(outline_, kTaken, std::nullopt, out_.left_out); }
 
   const ImportInput& input_;
   const XmlOutline& outline_;
