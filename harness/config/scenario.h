@@ -194,6 +194,17 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
                                  const std::vector<std::string>& events,
                                  base::DiagnosticSink& sink);
 
+/// An event that is to make a fluent hold, or not hold, by an effect axiom of the model.
+struct CausedFluent {
+  std::string event, fluent;
+  bool holds = true;
+};
+
+/// Reports a range of the mapping that the controller of an event leads a drawer or a door out of,
+/// although the event is to bring the fluent about: every simulation would be a discrepancy.
+void check_stops(const Scenario& scenario, const std::vector<CausedFluent>& caused,
+                 base::DiagnosticSink& sink);
+
 /// For a world that is a model (`info`): fluents without a mapping become the fluents of the same
 /// name there, or are ignored where it has none; events without an action become the event of the
 /// same name. Reports kSimulatorLacksEvent and kUnknownController for ground events that the world

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
 #include <set>
 #include <tuple>
 
@@ -160,10 +163,76 @@ class NameChecker {
   std::set<std::pair<std::string, std::string_view>> reported_;
 };
 
+/// A number, by its unit; what has the unit 1 may be anything but for the built-in simulator, whose
+/// other variables are flags, and texts where a robot looks.
+enum class VariableKind : std::uint8_t { kUnknown, kNumber, kFlag, kText };
+VariableKind kind_of(const Parameter& parameter, bool built_in) {
+  for (const std::string_view unit : {"m", "rad", "kg", "s", "m/s", "rad/s", "N", "Nm"}) {
+    if (parameter.unit == unit) return VariableKind::kNumber;
+  }
+  if (!built_in || parameter.unit != "1") return VariableKind::kUnknown;
+  return parameter.name.ends_with(".looking_at") ? VariableKind::kText : VariableKind::kFlag;
+}
+
+std::string_view words_for(VariableKind kind) {
+  return kind == VariableKind::kNumber ? "a number"
+         : kind == VariableKind::kFlag ? "true or false"
+                                       : "a text";
+}
+
+/// The variables that a fluent reads as something of one kind, by the key that names them.
+struct KindUse {
+  std::string_view key;
+  std::string variable;
+  VariableKind kind;
+};
+std::vector<KindUse> kind_uses(const FluentBinding& binding, const GroundFluent& fluent) {
+  std::vector<KindUse> out;
+  const auto add = [&](std::string_view key, const std::string& variable, VariableKind kind) {
+    out.push_back({key, with_arguments(variable, fluent), kind});
+  };
+  if (const auto* inside = binding.inside()) {
+    if (inside->unless) add(Key::kUnless, *inside->unless, VariableKind::kFlag);
+    if (inside->only_if) add(Key::kOnlyIf, *inside->only_if, VariableKind::kFlag);
+  } else if (const auto* flag = std::get_if<FlagBinding>(&binding.condition)) {
+    add(Key::kFlag, flag->variable, VariableKind::kFlag);
+  } else if (const auto* range = std::get_if<RangeBinding>(&binding.condition)) {
+    add(Key::kRange, range->variable, VariableKind::kNumber);
+  } else if (const auto* equals = std::get_if<EqualsBinding>(&binding.condition)) {
+    add(Key::kEquals, equals->variable, VariableKind::kText);
+  }
+  return out;
+}
+
+/// What a fluent reads as a flag, a number or a text must be one, or it never holds.
+void check_kinds(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
+                 const std::vector<Parameter>& parameters, base::DiagnosticSink& sink) {
+  const bool built_in = scenario.simulator.is_built_in();
+  std::set<std::string> reported;
+  for (const auto& fluent : fluents) {
+    const auto* binding = scenario.mapping->find(fluent.symbol);
+    if (binding == nullptr || reported.contains(fluent.symbol)) continue;
+    for (const auto& use : kind_uses(*binding, fluent)) {
+      const auto found =
+          std::find_if(parameters.begin(), parameters.end(),
+                       [&](const Parameter& one) { return one.name == use.variable; });
+      if (found == parameters.end()) continue;
+      const auto kind = kind_of(*found, built_in);
+      if (kind == VariableKind::kUnknown || kind == use.kind) continue;
+      if (!reported.insert(fluent.symbol).second) break;
+      sink.error(codes::kBadWorld, binding->source,
+                 fmt::format("mapping/{}/{}", fluent.symbol, use.key),
+                 fmt::format("asks for {}, and `{}` is {}", words_for(use.kind), use.variable,
+                             words_for(kind)));
+    }
+  }
+}
+
 /// The variables that depend on a fluent's arguments, `{item}.held_by.{arm}`: one message for an
 /// entry, about its first fluent that cannot be read.
 void check_fluent_variables(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
                             const std::vector<Parameter>& parameters, base::DiagnosticSink& sink) {
+  check_kinds(scenario, fluents, parameters, sink);
   const auto known = names_of(parameters);
   const std::set<std::string> index(known.begin(), known.end());
   std::set<std::string> reported;
@@ -179,6 +248,28 @@ void check_fluent_variables(const Scenario& scenario, const std::vector<GroundFl
       break;
     }
   }
+}
+
+}  // namespace
+
+namespace {
+
+/// Angles are in radians: an interval of more than a turn, or one far from any turn, is in degrees.
+void check_angle(const SampledDimension& dimension, const Parameter& parameter,
+                 const Scenario& scenario, base::DiagnosticSink& sink) {
+  constexpr double kTurn_rad = 2.0 * std::numbers::pi, kRounding_rad = 0.05;
+  if (parameter.unit != "rad" && !is_angle(parameter.name)) return;
+  const Interval& at = dimension.interval;
+  const double farthest = std::max(std::abs(at.lower), std::abs(at.upper));
+  const bool is_wide = at.upper - at.lower > kTurn_rad + kRounding_rad;
+  if (!is_wide && farthest <= 2.0 * kTurn_rad) return;
+  sink.error(codes::kBadWorld, scenario.sampled_at(dimension.variable),
+             fmt::format("sampling/{}", dimension.variable),
+             fmt::format("is from {:g} to {:g} rad, and {}; angles are in radians: {:g} degrees are "
+                         "{:.4g} rad",
+                         at.lower, at.upper,
+                         is_wide ? "a turn is 6.283 rad" : "that is turns away from 0", at.upper,
+                         at.upper * std::numbers::pi / 180.0));
 }
 
 }  // namespace
@@ -205,6 +296,8 @@ base::Status check_variables(const Scenario& scenario, const std::vector<Paramet
     } else if (!found->settable) {
       sink.error(codes::kVariableNotSettable, scenario.sampled_at(dimension.variable),
                  dimension.variable);
+    } else {
+      check_angle(dimension, *found, scenario, sink);
     }
   }
   check_law(scenario, parameters, sink);
@@ -337,7 +430,49 @@ std::optional<Stops> stops_of(const WorldLayout& layout, std::string_view name) 
   return std::nullopt;
 }
 
+/// The stop that the controller leads a joint to; none where it leads none.
+std::optional<double> goal_of(std::string_view controller, const Stops& stops) {
+  if (controller == "open-drawer" || controller == "open-door") return stops.high;
+  if (controller == "close-drawer" || controller == "close-door") return stops.low;
+  return std::nullopt;
+}
+
 }  // namespace
+
+void check_stops(const Scenario& scenario, const std::vector<CausedFluent>& caused,
+                 base::DiagnosticSink& sink) {
+  const auto layout = lay_out(scenario.world);
+  std::set<std::string> reported;
+  for (const CausedFluent& one : caused) {
+    const auto action = std::find_if(scenario.actions.begin(), scenario.actions.end(),
+                                     [&](const ActionBinding& a) { return a.event == one.event; });
+    const auto* binding = scenario.mapping->find(one.fluent);
+    const auto* range =
+        binding == nullptr ? nullptr : std::get_if<RangeBinding>(&binding->condition);
+    if (action == scenario.actions.end() || range == nullptr) continue;
+    const auto joint = action->arguments.find("joint");
+    const auto* name =
+        joint == action->arguments.end() ? nullptr : std::get_if<std::string>(&joint->second);
+    // A joint that depends on the event may be any; then the fluent of each is looked at elsewhere.
+    if (name == nullptr || range->variable != *name + ".q") continue;
+    const auto stops = stops_of(layout, *name);
+    const auto goal = stops ? goal_of(action->controller, *stops) : std::nullopt;
+    if (!goal) continue;
+    const auto lies_in = [&](const Interval& at) {
+      return at.lower <= *goal + kPlay_m && *goal <= at.upper + kPlay_m;
+    };
+    const Interval &wanted = one.holds ? range->holds : range->fails,
+                   &other = one.holds ? range->fails : range->holds;
+    if (lies_in(wanted) || !lies_in(other) || !reported.insert(one.fluent).second) continue;
+    const auto key = one.holds ? Key::kHolds : Key::kFails;
+    sink.error(codes::kBadWorld, binding->source, fmt::format("mapping/{}/{}", one.fluent, key),
+               fmt::format("is from {:g} to {:g}, but the event `{}` is to make it so that `{}` {}, "
+                           "and its controller `{}` leads `{}` to its stop at {:g}",
+                           wanted.lower, wanted.upper, one.event, one.fluent,
+                           one.holds ? "holds" : "does not hold", action->controller, *name,
+                           *goal));
+  }
+}
 
 void check_ranges(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
                   base::DiagnosticSink& sink) {

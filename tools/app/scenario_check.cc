@@ -147,6 +147,19 @@ std::unique_ptr<harness::Simulator> tried_simulator(const ScenarioModel& loaded,
   return nullptr;
 }
 
+/// What the effect axioms of the model say that events do.
+std::vector<harness::CausedFluent> caused_fluents(const compiler::TypedModel& model) {
+  std::vector<harness::CausedFluent> out;
+  for (const compiler::EffectAxiom& effect : model.effects) {
+    const auto &event = model.terms[effect.event], &fluent = model.terms[effect.fluent];
+    const bool named = event.kind == TermKind::kApply && fluent.kind == TermKind::kApply;
+    if (!named || effect.kind == compiler::EffectKind::kReleases) continue;
+    out.push_back({model.symbols[event.symbol].name, model.symbols[fluent.symbol].name,
+                   effect.kind == compiler::EffectKind::kInitiates});
+  }
+  return out;
+}
+
 /// Of a plan that is to be executed: what it asks and performs, where it can begin.
 void check_before_executions(const ScenarioModel& loaded, Context& context) {
   auto& sink = context.sink();
@@ -182,6 +195,11 @@ void check_before_run(const ScenarioModel& loaded, Context& context) {
   auto& sink = context.sink();
   const auto& scenario = loaded.scenario;
   const auto& model = loaded.compilation.model;
+  if (scenario.simulator.is_built_in() && scenario.mapping && loaded.compilation.typed) {
+    const auto errors_before = sink.error_count();
+    harness::check_stops(scenario, caused_fluents(*loaded.compilation.typed), sink);
+    if (sink.error_count() != errors_before) return;
+  }
   if (scenario.execution == harness::Execution::kClosedLoop) {
     return check_before_executions(loaded, context);
   }
