@@ -263,13 +263,13 @@ void check_angle(const SampledDimension& dimension, const Parameter& parameter,
   const double farthest = std::max(std::abs(at.lower), std::abs(at.upper));
   const bool is_wide = at.upper - at.lower > kTurn_rad + kRounding_rad;
   if (!is_wide && farthest <= 2.0 * kTurn_rad) return;
-  sink.error(codes::kBadWorld, scenario.sampled_at(dimension.variable),
-             fmt::format("sampling/{}", dimension.variable),
-             fmt::format("is from {:g} to {:g} rad, and {}; angles are in radians: {:g} degrees are "
-                         "{:.4g} rad",
-                         at.lower, at.upper,
-                         is_wide ? "a turn is 6.283 rad" : "that is turns away from 0", at.upper,
-                         at.upper * std::numbers::pi / 180.0));
+  sink.error(
+      codes::kBadWorld, scenario.sampled_at(dimension.variable),
+      fmt::format("sampling/{}", dimension.variable),
+      fmt::format("is from {:g} to {:g} rad, and {}; angles are in radians: {:g} degrees are "
+                  "{:.4g} rad",
+                  at.lower, at.upper, is_wide ? "a turn is 6.283 rad" : "that is turns away from 0",
+                  at.upper, at.upper * std::numbers::pi / 180.0));
 }
 
 }  // namespace
@@ -465,12 +465,12 @@ void check_stops(const Scenario& scenario, const std::vector<CausedFluent>& caus
                    &other = one.holds ? range->fails : range->holds;
     if (lies_in(wanted) || !lies_in(other) || !reported.insert(one.fluent).second) continue;
     const auto key = one.holds ? Key::kHolds : Key::kFails;
-    sink.error(codes::kBadWorld, binding->source, fmt::format("mapping/{}/{}", one.fluent, key),
-               fmt::format("is from {:g} to {:g}, but the event `{}` is to make it so that `{}` {}, "
-                           "and its controller `{}` leads `{}` to its stop at {:g}",
-                           wanted.lower, wanted.upper, one.event, one.fluent,
-                           one.holds ? "holds" : "does not hold", action->controller, *name,
-                           *goal));
+    sink.error(
+        codes::kBadWorld, binding->source, fmt::format("mapping/{}/{}", one.fluent, key),
+        fmt::format("is from {:g} to {:g}, but the event `{}` is to make it so that `{}` {}, "
+                    "and its controller `{}` leads `{}` to its stop at {:g}",
+                    wanted.lower, wanted.upper, one.event, one.fluent,
+                    one.holds ? "holds" : "does not hold", action->controller, *name, *goal));
   }
 }
 

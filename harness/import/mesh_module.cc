@@ -38,9 +38,9 @@ struct AnswerHead {
 
 std::string answer_of(const MeshCorners& said) {
   const std::string fault = said.fault.value_or("").substr(0, 1000);
-  const AnswerHead head{fault.size(), said.corners.size(), said.faces,      said.hull_corners,
-                        said.off,     said.volume,         said.hull_volume,
-                        said.is_open ? 1U : 0U};
+  const AnswerHead head{
+      fault.size(), said.corners.size(), said.faces,       said.hull_corners,
+      said.off,     said.volume,         said.hull_volume, said.is_open ? 1U : 0U};
   std::string bytes(reinterpret_cast<const char*>(&head), sizeof(head));
   bytes += fault;
   if (fault.empty() && !said.corners.empty()) {

@@ -174,7 +174,7 @@ class IncludeGate {
   const std::vector<fs::path>& folders_;
   std::set<std::string> files_, absent_;
   std::map<std::string, std::size_t> texts_;
-  std::size_t here_ = 0;  // the outermost include
+  std::size_t here_ = 0;                                 // the outermost include
   std::size_t followed_ = 0, elements_ = 0, parts_ = 0;  // of all files together
 };
 

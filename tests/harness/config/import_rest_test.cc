@@ -39,9 +39,8 @@ ImportedWorld imported(bool is_sdf, const std::string& text) {
 }
 
 bool lists(const ImportedWorld& world, const std::string& word) {
-  return std::any_of(world.left_out.begin(), world.left_out.end(), [&](const LeftOut& one) {
-    return one.what.find(word) != std::string::npos;
-  });
+  return std::any_of(world.left_out.begin(), world.left_out.end(),
+                     [&](const LeftOut& one) { return one.what.find(word) != std::string::npos; });
 }
 
 /// Is it listed, or the file refused, wherever an element, or an attribute, of this kind stands?
@@ -51,9 +50,11 @@ void check_planted(bool is_sdf, const std::string& text, const std::string& elem
   REQUIRE_MESSAGE(!plain.fault, plain.fault->message);
   CHECK(plain.left_out.empty());
   std::size_t places = 0;
-  for (std::size_t at = text.find("?>") == text.npos ? 0 : text.find("?>"); at < text.size(); ++at) {
+  for (std::size_t at = text.find("?>") == text.npos ? 0 : text.find("?>"); at < text.size();
+       ++at) {
     if (text[at] != '>' || text[at - 1] == '?') continue;
-    const bool is_end = text.rfind("</", at) != text.npos && text.rfind('<', at) == text.rfind("</", at);
+    const bool is_end =
+        text.rfind("</", at) != text.npos && text.rfind('<', at) == text.rfind("</", at);
     if (is_end) continue;
     const bool is_empty = text[at - 1] == '/';
     for (const bool is_attribute : {true, false}) {

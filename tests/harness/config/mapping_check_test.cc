@@ -24,16 +24,16 @@ std::vector<std::string> reports_of(const std::string& text) {
 }
 
 TEST_CASE("an angle of more than a turn, or far from any, is refused where it is sampled") {
-  for (const auto& [interval, is_fine] : std::vector<std::pair<std::string, bool>>{
-           {"[-11, 11]", false},
-           {"[-180, 180]", false},
-           {"[0, 90]", false},
-           {"[80, 85]", false},
-           {"45", false},
-           {"[-3.15, 3.15]", true},
-           {"[0, 6.2832]", true},
-           {"[3, 9]", true},
-           {"-1.57", true}}) {
+  for (const auto& [interval, is_fine] :
+       std::vector<std::pair<std::string, bool>>{{"[-11, 11]", false},
+                                                 {"[-180, 180]", false},
+                                                 {"[0, 90]", false},
+                                                 {"[80, 85]", false},
+                                                 {"45", false},
+                                                 {"[-3.15, 3.15]", true},
+                                                 {"[0, 6.2832]", true},
+                                                 {"[3, 9]", true},
+                                                 {"-1.57", true}}) {
     CAPTURE(interval);
     const auto reports = reports_of(replaced(kScenario, "[-0.1, 0.1]", interval));
     CHECK(reports.empty() == is_fine);
@@ -88,8 +88,8 @@ TEST_CASE("what an event is to bring about holds at the stop that its controller
         changed.actions[1].arguments = {{"joint", std::string("drive")}};
         FluentBinding binding;
         binding.fluent = "Open";
-        binding.condition = RangeBinding{"drive.q", holds_high ? at_high : at_low,
-                                         holds_high ? at_low : at_high};
+        binding.condition =
+            RangeBinding{"drive.q", holds_high ? at_high : at_low, holds_high ? at_low : at_high};
         changed.mapping.emplace(RegionMap(RegionSet()), std::vector<FluentBinding>{binding});
         const auto before = workspace.sink.error_count();
         check_stops(changed, {{changed.actions[1].event, "Open", is_initiated}}, workspace.sink);

@@ -128,7 +128,8 @@ TEST_CASE("a row of CSV says what its cells say") {
 }
 
 TEST_CASE("quotes around an empty cell change nothing, in every column") {
-  const std::string columns = "t,event,outcome,reason,started,door.q,box.held,robot.looking_at,other";
+  const std::string columns =
+      "t,event,outcome,reason,started,door.q,box.held,robot.looking_at,other";
   for (int quoted = 0; quoted < 256; ++quoted) {
     CsvFixture f;
     REQUIRE(f.header(columns) == "");
