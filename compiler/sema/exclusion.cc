@@ -98,22 +98,22 @@ class Expansion {
     return model_.terms.add(std::move(term));
   }
 
-  /// Does some symbol of the statement have more than one argument of the sort?
-  bool has_several(SortId sort) const {
-    return std::any_of(symbols_.begin(), symbols_.end(), [&](SymbolId id) {
+  /// Does one of the symbols have more than one argument of the sort?
+  bool has_several(const std::vector<SymbolId>& symbols, SortId sort) const {
+    return std::any_of(symbols.begin(), symbols.end(), [&](SymbolId id) {
       const auto& arguments = model_.symbols[id].arguments;
       return std::count(arguments.begin(), arguments.end(), sort) > 1;
     });
   }
 
-  /// The n-th argument of a sort is the same variable in every symbol (Mueller's encoder of 2005).
+  /// A sort's arguments are numbered where one of `numbered_by_` has several.
   std::vector<TermId> arguments(const Symbol& symbol) {
     std::vector<TermId> terms;
     for (std::size_t i = 0; i < symbol.arguments.size(); ++i) {
       const auto sort = symbol.arguments[i];
       const auto begin = symbol.arguments.begin();
       std::string name = model_.sorts[sort].name;
-      if (has_several(sort)) {
+      if (has_several(numbered_by_, sort)) {
         const auto before = std::count(begin, begin + static_cast<std::ptrdiff_t>(i), sort);
         name += std::to_string(before + 1);
       }
@@ -158,6 +158,9 @@ class Expansion {
     any.kind = FormulaKind::kOr;
     any.source = source_;
     for (const auto symbol : symbols) {
+      // Pairs share the n-th argument of a sort whatever its name; the disjunction of `xor` shares
+      // variables by name, and numbers them for each symbol alone (the reasoner of 2005).
+      numbered_by_ = negative ? symbols : std::vector<SymbolId>{symbol};
       const auto positive = atom(symbol);
       any.children.push_back(negative ? negated(positive) : positive);
     }
@@ -182,6 +185,7 @@ class Expansion {
   const base::SourceRange source_;
   std::vector<SymbolId> symbols_;
   std::vector<VariableId> variables_;  // of the axiom being made
+  std::vector<SymbolId> numbered_by_;  // decide which arguments of the axiom are numbered
   bool failed_ = false;
 };
 

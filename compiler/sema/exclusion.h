@@ -9,10 +9,11 @@
 namespace parallax::compiler {
 
 /// Expands `mutex A, B, ...` into `[vars,time] !A(..) | !B(..)` for each pair of different symbols,
-/// and `xor` also into `[vars,time] A(..) | B(..) | ...`. The n-th argument of a
-/// sort is the same variable in every symbol, also where symbols have different numbers of
-/// arguments: two events of one agent exclude each other, those of two agents do not. `position` is that of
-/// the statement in ModelAst::order.
+/// and `xor` also into `[vars,time] A(..) | B(..) | ...`. In a pair the n-th
+/// argument of a sort is the same variable in both symbols, also where they have different numbers
+/// of arguments: two events of one agent exclude each other, those of two agents do not. In the
+/// disjunction of `xor` a symbol's only argument of a sort is not shared with one of several.
+/// `position` is that of the statement in ModelAst::order.
 void add_exclusion(const Ast& ast, const Statement& statement, std::size_t position,
                    const IgnoredNames& ignored, Elaborator& elaborator, TypedModel& model,
                    base::DiagnosticSink& sink);

@@ -1,5 +1,6 @@
-// `mutex` and `xor` counted from their definition: the n-th argument of a sort is one variable in
-// all names. The oracle reads the statement itself and knows nothing of its expansion.
+// `mutex` and `xor` counted from their definition: in a pair of names the n-th argument of a sort
+// is one variable. The disjunction of `xor` numbers arguments only in names that have several. The
+// oracle reads the statement itself and knows nothing of its expansion.
 
 #include <doctest/doctest.h>
 
@@ -46,6 +47,23 @@ int instance(const Exclusion& exclusion, std::size_t i, int assignment) {
   return before + assignment % power(exclusion.arities[i]);
 }
 
+bool excludes_pairs(const Exclusion& exclusion, int state, int assignment) {
+  int true_names = 0;
+  for (std::size_t i = 0; i < exclusion.arities.size(); ++i) {
+    true_names += state >> instance(exclusion, i, assignment) & 1;
+  }
+  return true_names <= 1;
+}
+
+/// The only argument of a name is the variable `jar`, the last bit; others are jar1, jar2, ...
+bool has_one(const Exclusion& exclusion, int state, int assignment, int jar) {
+  for (std::size_t i = 0; i < exclusion.arities.size(); ++i) {
+    const int chosen = exclusion.arities[i] == 1 ? jar : assignment;
+    if ((state >> instance(exclusion, i, chosen) & 1) != 0) return true;
+  }
+  return false;
+}
+
 /// Assigns every instance a truth value in all ways and keeps those that the definition admits.
 int count_by_definition(const Exclusion& exclusion) {
   const auto& arities = exclusion.arities;
@@ -56,11 +74,10 @@ int count_by_definition(const Exclusion& exclusion) {
   for (int state = 0; state < 1 << instances; ++state) {
     bool fits = true;
     for (int assignment = 0; assignment < power(variables) && fits; ++assignment) {
-      int true_names = 0;
-      for (std::size_t i = 0; i < arities.size(); ++i) {
-        true_names += state >> instance(exclusion, i, assignment) & 1;
+      fits = excludes_pairs(exclusion, state, assignment);
+      for (int jar = 0; jar < kObjects && fits && exclusion.is_xor; ++jar) {
+        fits = has_one(exclusion, state, assignment, jar);
       }
-      fits = true_names <= 1 && (!exclusion.is_xor || true_names == 1);
     }
     admitted += fits ? 1 : 0;
   }
