@@ -6,7 +6,9 @@
 #include <fstream>
 
 #include "tools/bench/bench.h"
+#include "tools/bench/check.h"
 #include "tools/bench/families/families.h"
+#include "tools/bench/reference_work.h"
 #include "tools/cli/command_line.h"
 
 namespace parallax::tools {
@@ -107,13 +109,23 @@ int run(int argc, char** argv) {
               "Seconds of processor time that a single run may take")
       .check(FiniteNumber{0.1, 1e5})
       .show_default();
+  bool checks = false;
+  CheckOptions check;
+  table.flag("--check", checks, "Hold cheap questions against the recorded bounds, in a minute");
+  table.flag("--record", check.record, "With --check: record what was measured as the new bounds");
+  table.option("--bounds", check.bounds, "With --check: the file of bounds").show_default();
+  table
+      .option("--build-cpu", check.build_cpu_s,
+              "With --check: processor seconds that a build of all from nothing took")
+      .check(FiniteNumber{0.0, 1e6});
   std::string argument;
   bool tuned = false;
   OptionTable model("model", "Print the model of a family, such as lamps_4_6");
   model.flag("--tuned", tuned, "The logic program that a clingo user would write instead");
   OptionTable solve("solve", "CaDiCaL alone on a DIMACS file");
+  OptionTable reference("reference", "The work that is the unit of --check");
   OptionTable stages("stages", "Time the stages of compiling a model file");
-  const Program program{table, "", false, {&model, &solve, &stages}};
+  const Program program{table, "", false, {&model, &solve, &stages, &reference}};
   for (auto* command : {&model, &solve, &stages}) {
     command->option("name", argument, "Name or file").required();
   }
@@ -122,8 +134,12 @@ int run(int argc, char** argv) {
   stages.option("--bind", staged.binding, "Its binding table");
   const auto line = parse_and_print(program, argc, argv);
   if (line.exit_code) return *line.exit_code;
-  if (!line.command) return measure_all(options);
+  if (!line.command) return checks ? check_bounds(check) : measure_all(options);
   const auto* command = program.commands[*line.command];
+  if (command == &reference) {
+    fmt::print("{}\n", reference_work());
+    return 0;
+  }
   if (command == &model) return print_model(argument, tuned);
   if (command == &solve) return solve_plainly(argument);
   staged.model = argument;
