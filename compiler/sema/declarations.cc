@@ -52,6 +52,7 @@ class Declarer {
         apply_option(ast, statement, model_.options, sink_);
       }
     });
+    report_like_variables();
     override_time();
     find_core();
     check_finite_sorts(model_, sink_);
@@ -92,6 +93,41 @@ class Declarer {
 
   // --- constants ---
 
+  /// A constant that reads as a variable of `sort`.
+  struct LikeVariable {
+    std::string name;
+    base::SourceRange source;
+    SortId sort;
+  };
+
+  void reads_as_variable(const LikeVariable& like) {
+    const auto& sort = model_.sorts[like.sort];
+    sink_.error(codes::kNameSpelling, like.source, shortened(like.name), "a constant")
+        .note(sort.declared, "it would read as a variable of the sort `" + sort.name + "`")
+        .fix(NameAdvice::replace(like.name, capitalized(like.name)));
+  }
+
+  bool has_constants(SortId sort) const {
+    for (std::size_t i = 0; i < model_.sorts.size(); ++i) {
+      const auto below = model_.sorts.id_at(i);
+      if (model_.is_subsort(below, sort) && !model_.sorts[below].constants.empty()) return true;
+    }
+    return false;
+  }
+
+  /// Some tools declare variables, as in `agent agent1`. Where the sort has constants of its own
+  /// that is what is meant, and an object more would change every formula about the sort.
+  void report_like_variables() {
+    for (const auto& like : like_variables_) {
+      if (has_constants(like.sort)) {
+        sink_.warning(codes::kVariableDeclared, like.source, shortened(like.name),
+                      model_.sorts[like.sort].name);
+      } else {
+        reads_as_variable(like);
+      }
+    }
+  }
+
   void constants(const Ast& ast, const Statement& statement) {
     const auto sort = resolve_sort(ast, statement.sort, model_, sink_);
     for (std::uint32_t i = 0; !sort && i < statement.item_count; ++i) {
@@ -115,11 +151,10 @@ class Declarer {
     } else if (like == sort_id && sort.reified && name != sort.name) {
       // Old models declare `fluent fluent2` before they use the variable.
       sink_.warning(codes::kVariableDeclared, ast.source(word), shortened(name), sort.name);
+    } else if (like == sort_id) {
+      like_variables_.push_back({std::string(name), ast.source(word), sort_id});
     } else if (like) {
-      sink_.error(codes::kNameSpelling, ast.source(word), shortened(name), "a constant")
-          .note(model_.sorts[*like].declared,
-                "it would read as a variable of the sort `" + model_.sorts[*like].name + "`")
-          .fix(NameAdvice::replace(name, capitalized(name)));
+      reads_as_variable({std::string(name), ast.source(word), *like});
     } else if (sort.reified) {
       sink_.error(codes::kReifiedConstant, ast.source(word), shortened(name), sort.name)
           .note(sort.declared, "sort `" + sort.name + "` declared here")
@@ -384,6 +419,7 @@ class Declarer {
     }
   }
 
+  std::vector<LikeVariable> like_variables_;
   const ModelAst& model_ast_;
   const IgnoredNames& ignored_;
   const CheckOptions& options_;

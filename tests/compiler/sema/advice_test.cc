@@ -92,7 +92,7 @@ TEST_CASE("a symbol that cannot be called so is reported once, with the name tha
         Strings{"E1017 11:7-8"});
   CHECK(says("event go(room)\n", "`go` cannot name an event"));
   CHECK(says("event go(room)\n", "fix: replace `go` with `Go`"));
-  CHECK(says("room room3\n", "fix: replace `room3` with `Room3`"));
+  CHECK(says("sort lane\nlane lane3\n", "fix: replace `lane3` with `Lane3`"));
 }
 
 TEST_CASE("a constant that is not declared: those of its sort are listed") {

@@ -72,9 +72,25 @@ TEST_CASE("constants: lower-case names are fine unless they read as variables") 
       "sort region\nregion r1, left\npredicate P(region)\nP(r1) & P(left).\n");
   CHECK(checked.text() == "");
   CHECK(places("sort region\nregion region1\n") == Strings{"E1017 2:8-14"});
+  CHECK(places("sort region\nsort town\nregion town1\n") == Strings{"E1017 3:8-12"});
   const CheckedText wrong("sort region\nregion r1, r2\npredicate P(region)\nP(r3).\n");
   CHECK(wrong.places() == Strings{"E2101 4:3-4"});
   CHECK(wrong.text().find("fix: replace `r3` with `r1`") != std::string::npos);
+}
+
+TEST_CASE("constants: a declared variable declares no object where the sort has others") {
+  const std::string text =
+      "sort guest\nguest Visitor\npredicate Knows(guest,guest)\nguest guest1, guest2\n"
+      "[guest1,guest2] Knows(guest1,guest2).\n";
+  const CheckedText checked(text);
+  REQUIRE(checked.model);
+  CHECK(checked.places() == Strings{"W2011 4:7-12", "W2011 4:15-20"});
+  CHECK(checked.text().find("fix:") == std::string::npos);
+  CHECK(checked.model->sorts[*checked.model->find_sort("guest")].constants.size() == 1);
+  // Whatever the order, and where the objects are of a sort below.
+  CHECK(places("sort guest\nguest guest1\nguest Visitor\n") == Strings{"W2011 2:7-12"});
+  CHECK(places("sort guest\nsort friend: guest\nfriend Ann\nguest guest1\n") ==
+        Strings{"W2011 4:7-12"});
 }
 
 TEST_CASE("constants: a misspelt keyword is recognised") {
