@@ -256,7 +256,7 @@ TEST_CASE("ignore: formulas go wherever they stand, declarations and lists from 
   CHECK(checked.model->axioms.size() == 1);
 }
 
-TEST_CASE("mutex: one axiom a pair, variables shared by name, time added for fluents and events") {
+TEST_CASE("mutex: one axiom a pair, the n-th arguments of a sort shared, time added") {
   const CheckedText checked(
       std::string(kTime) +
       "sort agent\nagent A\nfluent F(agent)\nevent E(agent)\n"
@@ -267,9 +267,9 @@ TEST_CASE("mutex: one axiom a pair, variables shared by name, time added for flu
     axioms.push_back(TypedText(*checked.model).axiom(axiom));
   }
   CHECK(axioms == Strings{"[agent,time ](!HoldsAt(F(agent),time ) | !Happens(E(agent),time ))",
-                          "[agent,time ,agent1,agent2](!HoldsAt(F(agent),time ) | "
+                          "[agent1,time ,agent2](!HoldsAt(F(agent1),time ) | "
                           "!Happens(M(agent1,agent2),time ))",
-                          "[agent,time ,agent1,agent2](!Happens(E(agent),time ) | "
+                          "[agent1,time ,agent2](!Happens(E(agent1),time ) | "
                           "!Happens(M(agent1,agent2),time ))",
                           "[agent,time ](!Happens(E(agent),time ) | !P(agent))"});
 }
