@@ -188,6 +188,7 @@ class ShapeReader {
           stack.push_back({formula.children[1], extend(task.prefix, formula.children[0], true)});
           break;
         case FormulaKind::kAnd:
+          has_conjuncts_ = true;
           for (auto child = formula.children.rbegin(); child != formula.children.rend(); ++child) {
             stack.push_back({*child, task.prefix});
           }
@@ -296,6 +297,8 @@ class ShapeReader {
     } else if (std::count_if(occurrences_.begin(), occurrences_.end(),
                              [](const Occurrence& found) { return found.head; }) > 1) {
       reason = "loses sight of it, because it has more than one effect";
+    } else if (has_conjuncts_) {
+      reason = "loses sight of it, because it is a part of a conjunction";
     } else if (occurrences_.size() > 1) {
       reason = "takes the effect in its condition for what that effect would bring about";
     } else if (model_.terms[at(head).terms[2]].kind != TermKind::kVariable) {
@@ -312,6 +315,7 @@ class ShapeReader {
   std::vector<Occurrence> occurrences_;
   std::vector<Prefix> prefixes_;
   bool warned_ = false;
+  bool has_conjuncts_ = false;  // what is asserted is a conjunction
 };
 
 }  // namespace

@@ -59,6 +59,9 @@ TEST_CASE("shapes that the 2005 reasoner gets wrong are warned about, once an ax
   CHECK(warnings("L: [time] Initiates(E(),F(),time).") == Strings{"W2001"});
   CHECK(warnings("[time] Initiates(E(),F(),time) & Terminates(E(),G(A),time).") ==
         Strings{"W2001"});
+  CHECK(warnings("([time] Initiates(E(),F(),time)) & ([time] Q()).") == Strings{"W2001"});
+  CHECK(warnings("[time] Q() & (P(A) -> Initiates(E(),F(),time)).") == Strings{"W2001"});
+  CHECK(warnings("[time] Q() & P(A) -> Initiates(E(),F(),time).").empty());
   CHECK(warnings("[time] Initiates(E(),F(),3).") == Strings{"W2001"});
   CHECK(warnings("[time] Q() -> (P(A) -> Initiates(E(),F(),time)).") == Strings{"W2001"});
 }
