@@ -207,9 +207,10 @@ void CompletenessClaim::visit_model(const Visit& visit) const {
   std::vector<Literal> guarded;
   for (std::size_t i = 0; i < model_.clauses.size(); ++i) {
     const auto t = model_.clause_timepoints[i];
-    const auto kind = model_.origins[model_.clause_origins[i]].kind;
-    const bool of_plan = kind == compiler::OriginKind::kPlanStep && !model_.plan.empty() && t > 0 &&
-                         model_.has_constraints && !model_.clause_is_definition[i];
+    const bool of_plan =
+        model_.has_constraints && !model_.plan.empty() && t > 0 &&
+        !model_.clause_is_definition[i] &&
+        model_.origins[model_.clause_origins[i]].kind == compiler::OriginKind::kPlanStep;
     if (!of_plan) {
       visit(model_.clauses[i]);
       continue;

@@ -71,8 +71,10 @@ void SolverSession::load_clause(std::size_t clause) {
   for (const auto literal : literals) scratch_.push_back(in_solver(literal));
   // A definition of an auxiliary is harmless at any horizon.
   if (t > 0 && !model_->clause_is_definition[clause] && loading_ != Loading::kWitness) {
-    const auto kind = model_->origins[model_->clause_origins[clause]].kind;
-    const bool of_plan = kind == compiler::OriginKind::kPlanStep && !model_->plan.empty();
+    // Models that were made for one question have no origins, and no plan.
+    const bool of_plan =
+        !model_->plan.empty() && clause < model_->clause_origins.size() &&
+        model_->origins[model_->clause_origins[clause]].kind == compiler::OriginKind::kPlanStep;
     const auto first = of_plan ? static_cast<std::size_t>(model_->horizon) : 0;
     scratch_.push_back(~in_solver(guards_[first + static_cast<std::size_t>(t) - 1]));
   }

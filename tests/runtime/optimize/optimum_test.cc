@@ -113,9 +113,10 @@ class Subject {
     }
     return hits.size() == 1 && hits.contains(brute().evaluator().horizon());
   }
-  Totals totals_of(const runtime::Trace& trace) {
-    return totals(brute().evaluator().values_of(tools::valuation_of(trace)));
+  compiler::ReferenceEvaluator::Values values_of(const runtime::Trace& trace) {
+    return brute().evaluator().values_of(tools::valuation_of(trace));
   }
+  Totals totals_of(const runtime::Trace& trace) { return totals(values_of(trace)); }
 
  private:
   using Instances = std::vector<std::pair<std::int64_t, compiler::FormulaTrees::Node>>;
@@ -246,6 +247,14 @@ TEST_CASE(
   CHECK(without > 10);
 }
 
+/// The first `n` steps of a trace. Predicates play no part in goals and objectives here.
+runtime::Trace beginning(runtime::Trace trace, Timepoint n) {
+  trace.points.resize(static_cast<std::size_t>(n) + 1);
+  trace.points.back().happens.clear();
+  trace.predicates.clear();
+  return trace;
+}
+
 TEST_CASE("where traces end at a goal, a trace of any length may be the best") {
   const std::vector<std::string> goals = {"{fluent} HoldsAt(fluent,time)",
                                           "{event} Happens(event,time-1)",
@@ -258,23 +267,33 @@ TEST_CASE("where traces end at a goal, a trace of any length may be the best") {
     const auto goal = random.pick(goals);
     Subject whole(text, objectives, goal);
     if (!whole.compiled() || whole.brute().open_atoms() > 14) continue;
+    const auto horizon = whole.model().horizon;
+    std::vector<std::unique_ptr<Subject>> parts;
+    for (Timepoint n = 0; n <= horizon; ++n) {
+      parts.push_back(std::make_unique<Subject>(text, objectives, goal, n));
+      if (!parts.back()->compiled()) break;
+    }
+    if (!parts.back()->compiled()) continue;
     std::optional<Totals> least;
     Timepoint least_length = 0;
-    bool usable = true;
-    for (Timepoint n = 0; n <= whole.model().horizon && usable; ++n) {
-      // What a model of this length says, and nothing of what comes after.
-      Subject part(text, objectives, goal, n);
-      usable = part.compiled();
-      if (!usable) break;
-      part.brute().for_each([&](const auto& values) {
-        if (!part.ends_here(values)) return;
+    // Every trace of the model alone, up to where it first meets the goal.
+    runtime::TraceQuery all;
+    all.distinct = runtime::Distinct::kAll;
+    runtime::ModelTraces traces(parts.back()->model(), all);
+    while (const auto trace = traces.next()) {
+      for (Timepoint n = 0; n <= horizon; ++n) {
+        auto& part = *parts[static_cast<std::size_t>(n)];
+        const auto values = part.values_of(beginning(*trace, n));
+        if (!part.ends_here(values)) continue;
         const auto totals = part.totals(values);
-        if (least && *least <= totals) return;
-        least = totals;
-        least_length = n;
-      });
+        if (!least || totals < *least) {
+          least = totals;
+          least_length = n;
+        } else if (totals == *least) {
+          least_length = std::min(least_length, n);
+        }
+      }
     }
-    if (!usable) continue;
     CAPTURE(seed);
     const auto found = optimum_of(whole.model());
     REQUIRE(found.proved());

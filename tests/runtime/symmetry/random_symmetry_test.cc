@@ -285,7 +285,6 @@ std::string planted_text(FuzzRandom& random, const Planted& planted, bool is_nam
       "range time 0 1\nsort thing\nsort place\nthing T1, T2, T3\nplace P1, P2, P3\n"
       "fluent Held(thing)\nfluent In(thing,place)\nevent Take(thing)\nevent Put(thing,place)\n"
       "predicate Own(thing,place)\npredicate Next(thing,thing)\n"
-      "[thing] !Happens(Take(thing),1).\n[thing,place] !Happens(Put(thing,place),1).\n"
       "[thing,place,time] !Happens(Put(thing,place),time) | Own(thing,place).\n" +
       planted.facts;
   for (std::size_t n = 9 + random.below(6); n > 0; --n) text += random.pick(kTied) + '\n';
