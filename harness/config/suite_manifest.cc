@@ -170,7 +170,9 @@ SuiteFileKind suite_file_kind(const std::filesystem::path& path, bool allow_outs
     const auto* expect = root->find(Key::kExpect);
     // An empty one takes back what an included file expects.
     const bool is_scenario = expect != nullptr ? expect->value.kind != YamlNode::Kind::kNull
-                                               : root->find(Key::kModel) != nullptr;
+                                               : root->find(Key::kModel) != nullptr &&
+                                                     (root->find(Key::kWorld) != nullptr ||
+                                                      root->find(Key::kSimulator) != nullptr);
     return is_scenario ? SuiteFileKind::kScenario : SuiteFileKind::kOther;
   }
   if (files.size() == 0) return SuiteFileKind::kBroken;

@@ -2,8 +2,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -40,6 +43,16 @@ void look_up(const std::string& program, CommandFiles& out) {
   }
 }
 
+/// Does an interpreter run this argument? Logs and other data that a simulator is told to write
+/// change from run to run.
+bool is_program_text(const std::string& path) {
+  static constexpr std::array<std::string_view, 9> kEndings = {".py", ".sh",  ".pl", ".rb", ".js",
+                                                               ".jl", ".lua", ".R",  ".m"};
+  const auto ending = fs::path(path).extension().string();
+  if (std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end()) return true;
+  return ::access(path.c_str(), X_OK) == 0;
+}
+
 }  // namespace
 
 CommandFiles files_of_command(const std::vector<std::string>& command) {
@@ -47,7 +60,7 @@ CommandFiles files_of_command(const std::vector<std::string>& command) {
   for (std::size_t i = 0; i < command.size(); ++i) {
     if (i == 0 && command[i].find('/') == std::string::npos) {
       look_up(command[i], out);
-    } else if (is_file(command[i])) {
+    } else if (is_file(command[i]) && (i == 0 || is_program_text(command[i]))) {
       out.found.push_back(command[i]);
     } else if (i == 0) {
       out.absent.push_back(command[i]);

@@ -30,7 +30,7 @@ TEST_CASE("a forced strategy lists and counts the same") {
     CHECK(cli.parallax({"traces", "m.e", "--count", "--strategy", strategy}).out == "256\n");
   }
   const auto stats = cli.parallax({"traces", "m.e", "--count", "--stats"});
-  CHECK(stats.err.find("strategy graph; ") != std::string::npos);
+  CHECK(stats.err.find("strategy search; ") != std::string::npos);
 }
 
 TEST_CASE("the graph counts with predicates that are tied to those that tie timepoints") {

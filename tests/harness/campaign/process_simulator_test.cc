@@ -247,12 +247,12 @@ TEST_CASE("the reset after a loss starts a new child") {
   ProcessSimulator simulator(options_for("third-act-crash"));
   REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
   const auto first = simulator.observe().at("pid");
-  CHECK(simulator.act("going", {}, 1.0).status == SimStatus::kFailed);
-  CHECK(simulator.act("going", {}, 1.0).status == SimStatus::kFailed);
+  CHECK(simulator.act("going", {}, 60.0).status == SimStatus::kFailed);
+  CHECK(simulator.act("going", {}, 60.0).status == SimStatus::kFailed);
   CHECK(simulator.act("going", {}, 1.0).status == SimStatus::kLost);
   REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
   CHECK(simulator.observe().at("pid") != first);
-  CHECK(simulator.act("going", {}, 1.0).status == SimStatus::kFailed);
+  CHECK(simulator.act("going", {}, 60.0).status == SimStatus::kFailed);
 }
 
 TEST_CASE("a child is replaced after so many resets") {
@@ -284,7 +284,7 @@ TEST_CASE("what does not start says why") {
 TEST_CASE("a child that writes much to standard error is not stopped by it") {
   ProcessSimulator simulator(options_for("chatty"));
   REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
-  CHECK(simulator.act("going", {}, 1.0).status == SimStatus::kFailed);
+  CHECK(simulator.act("going", {}, 60.0).status == SimStatus::kFailed);
 }
 
 TEST_CASE("the stop flag ends the waiting") {

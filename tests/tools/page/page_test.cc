@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/confidence/clean_runs.h"
+#include "harness/confidence/rounding.h"
 #include "harness/recording/recording.h"
 #include "tests/tools/page/html_check.h"
 #include "tools/page/csp_hash.h"
@@ -238,10 +239,10 @@ TEST_CASE("confidence is that of the runs whose starts were drawn") {
   const auto shown = check_html(run_page(page)).text;
   CHECK(shown.find("Executions: 30 runs, 0 not clean. Not counted: 30 with starts") !=
         std::string::npos);
-  CHECK(shown.find("stop after 30: " + percent(harness::bound_after(30, 0.99))) !=
+  CHECK(shown.find("stop after 30: " + harness::percent_up(harness::bound_after(30, 0.99))) !=
         std::string::npos);
   CHECK(shown.find("Certified with 99 % confidence: fewer than " +
-                   percent(harness::bound_after(30, 0.99))) != std::string::npos);
+                   harness::percent_up(harness::bound_after(30, 0.99))) != std::string::npos);
   CHECK(shown.find("Trace 1") == std::string::npos);
   CHECK(shown.find("Go(r1), Go(r2): too-far") != std::string::npos);
   // With failures the certified level is another one, and it is the one that is told.
