@@ -110,6 +110,13 @@ std::optional<std::pair<Timepoint, std::size_t>> best_witness(const FullLists& f
 /// Can the clauses of these origins up to `by` hold together with the trace up to then?
 bool allows(const CompiledModel& model, const std::set<std::uint32_t>& origins,
             const runtime::Trace& trace, Timepoint by, const FullLists& lists) {
+  if (model.variable_count() == 0) {
+    // Its clauses are empty, and no clause over variables could take their place.
+    for (std::size_t i = 0; i < model.clauses.size(); ++i) {
+      if (origins.contains(model.clause_origins[i])) return false;
+    }
+    return true;
+  }
   auto part = model;
   part.clauses = {};
   for (std::size_t i = 0; i < model.clauses.size(); ++i) {
