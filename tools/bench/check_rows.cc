@@ -83,7 +83,6 @@ std::vector<Question> all_questions(Bench& bench) {
       {"consequences", bench.model_file("bankplan_3_12_4_5"), "--json"});
   add("check kitchen/plan2_modified", {"check", kitchen});
   add("traces of kitchen/plan2_modified", {"traces", kitchen, "--limit", "0"});
-  all.push_back(scenario_run(bench, "two_regions", "two_regions/scenario.yaml", 40));
   all.push_back(scenario_run(bench, "kitchen/plan2_modified", "kitchen/plan2_modified.yaml", 1));
   return all;
 }
