@@ -24,9 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The clauses of the plan at timepoint t, 1 .. horizon, hold; numbered as a session does.
-Literal plan_reaches(const CompiledModel& model, const LengthVariables& lengths, Timepoint t) {
-  PARALLAX_REQUIRE(!model.plan.empty(), "a model with a plan");
+/// The clauses that end with the trace hold at timepoint t, 1 .. horizon; numbered as a session
+/// does.
+Literal trace_reaches(const CompiledModel& model, const LengthVariables& lengths, Timepoint t) {
+  PARALLAX_REQUIRE(has_ending_clauses(model), "a model with such clauses");
   return Literal::positive(lengths.last() + t);
 }
 
@@ -156,7 +157,7 @@ CompletenessClaim::CompletenessClaim(const CompiledModel& model)
       lengths_(model),
       index_(model),
       variables_(model.has_constraints ? lengths_.last() : model.variable_count()) {
-  if (model.has_constraints && !model.plan.empty()) variables_ += model.horizon;
+  if (model.has_constraints && has_ending_clauses(model)) variables_ += model.horizon;
   model.for_each_atom([&](const compiler::AtomRef& atom) {
     const auto kind = atom.kind;
     const bool result = kind == AtomKind::kResult && model.has_constraints;
@@ -196,27 +197,24 @@ std::vector<Literal> CompletenessClaim::given() const {
   std::vector<Literal> literals;
   for (Timepoint t = 1; t <= model_.horizon; ++t) literals.push_back(lengths_.reaches(t));
   for (Timepoint t = 1; t <= model_.horizon; ++t) {
-    if (model_.has_constraints || model_.plan.empty()) break;
-    literals.push_back(plan_reaches(model_, lengths_, t));
+    if (model_.has_constraints || !has_ending_clauses(model_)) break;
+    literals.push_back(trace_reaches(model_, lengths_, t));
   }
   return literals;
 }
 
-/// Those of a plan are guarded: behind a trace's end the plan is not followed any more.
+/// Clauses that end with the trace are guarded: behind its end no plan is followed.
 void CompletenessClaim::visit_model(const Visit& visit) const {
   std::vector<Literal> guarded;
   for (std::size_t i = 0; i < model_.clauses.size(); ++i) {
     const auto t = model_.clause_timepoints[i];
-    const bool of_plan =
-        model_.has_constraints && !model_.plan.empty() && t > 0 &&
-        !model_.clause_is_definition[i] &&
-        model_.origins[model_.clause_origins[i]].kind == compiler::OriginKind::kPlanStep;
-    if (!of_plan) {
+    const bool ends = model_.has_constraints && t > 0 && ends_with_trace(model_, i);
+    if (!ends) {
       visit(model_.clauses[i]);
       continue;
     }
     guarded.assign(model_.clauses[i].begin(), model_.clauses[i].end());
-    guarded.push_back(~plan_reaches(model_, lengths_, t));
+    guarded.push_back(~trace_reaches(model_, lengths_, t));
     visit(guarded);
   }
 }
@@ -228,8 +226,8 @@ void CompletenessClaim::visit_end(Timepoint n, const Visit& visit) const {
     const Literal clause[] = {~lengths_.ends(n), consequence};
     visit(clause);
   };
-  for (Timepoint t = 1; t <= n && !model_.plan.empty(); ++t) {
-    imply(plan_reaches(model_, lengths_, t));
+  for (Timepoint t = 1; t <= n && has_ending_clauses(model_); ++t) {
+    imply(trace_reaches(model_, lengths_, t));
   }
   for (Timepoint t = 0; t <= n; ++t) {
     const auto hit = index_.hit(t);
@@ -244,8 +242,8 @@ void CompletenessClaim::visit_going_on(const Visit& visit) const {
     const Literal clause[] = {~lengths_.goes_on(), consequence};
     visit(clause);
   };
-  for (Timepoint t = 1; t <= model_.horizon && !model_.plan.empty(); ++t) {
-    imply(plan_reaches(model_, lengths_, t));
+  for (Timepoint t = 1; t <= model_.horizon && has_ending_clauses(model_); ++t) {
+    imply(trace_reaches(model_, lengths_, t));
   }
   for (Timepoint t = 0; t <= model_.horizon; ++t) {
     if (const auto hit = index_.hit(t)) imply(~*hit);

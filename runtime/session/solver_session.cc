@@ -11,15 +11,31 @@ SolverSession::SolverSession(const CompiledModel& model, std::unique_ptr<SatSolv
       solver_(std::move(solver)),
       lengths_(model),
       variable_count_(lengths_.last()),
-      loading_(loading) {
+      loading_(loading),
+      has_ending_clauses_(has_ending_clauses(model)) {
   PARALLAX_REQUIRE(!model.folded, "a model with all copies of its clauses");
   for (Timepoint t = 1; t <= model.horizon; ++t) guards_.push_back(lengths_.reaches(t));
-  // Behind them, if there is a plan, those of its clauses.
-  for (Timepoint t = 1; t <= model.horizon && !model.plan.empty(); ++t) {
+  // Behind them those of clauses that end with the trace.
+  for (Timepoint t = 1; t <= model.horizon && has_ending_clauses_; ++t) {
     guards_.push_back(Literal::positive(++variable_count_));
   }
   values_.resize(static_cast<std::size_t>(model.variable_count()));
   if (loading_ == Loading::kWhole) load(model.horizon);
+}
+
+bool has_ending_clauses(const CompiledModel& model) {
+  return !model.plan.empty() ||
+         std::any_of(model.origins.begin(), model.origins.end(), [](const auto& origin) {
+           return origin.kind == compiler::OriginKind::kObjective;
+         });
+}
+
+bool ends_with_trace(const CompiledModel& model, std::size_t clause) {
+  // Models that were made for one question have no origins.
+  if (model.clause_is_definition[clause] || clause >= model.clause_origins.size()) return false;
+  const auto kind = model.origins[model.clause_origins[clause]].kind;
+  return kind == compiler::OriginKind::kObjective ||
+         (kind == compiler::OriginKind::kPlanStep && !model.plan.empty());
 }
 
 Literal SolverSession::new_variable() { return Literal::positive(++variable_count_); }
@@ -71,11 +87,8 @@ void SolverSession::load_clause(std::size_t clause) {
   for (const auto literal : literals) scratch_.push_back(in_solver(literal));
   // A definition of an auxiliary is harmless at any horizon.
   if (t > 0 && !model_->clause_is_definition[clause] && loading_ != Loading::kWitness) {
-    // Models that were made for one question have no origins, and no plan.
-    const bool of_plan =
-        !model_->plan.empty() && clause < model_->clause_origins.size() &&
-        model_->origins[model_->clause_origins[clause]].kind == compiler::OriginKind::kPlanStep;
-    const auto first = of_plan ? static_cast<std::size_t>(model_->horizon) : 0;
+    const bool ends = has_ending_clauses_ && ends_with_trace(*model_, clause);
+    const auto first = ends ? static_cast<std::size_t>(model_->horizon) : 0;
     scratch_.push_back(~in_solver(guards_[first + static_cast<std::size_t>(t) - 1]));
   }
   solver_->add_clause(scratch_);
@@ -118,7 +131,7 @@ SolveStatus SolverSession::solve(Timepoint n, Timepoint plan,
   for (Timepoint t = 1; t <= loaded_ && loading_ != Loading::kWitness; ++t) {
     const auto guard = in_solver(guards_[static_cast<std::size_t>(t) - 1]);
     solver_->assume(t <= n ? guard : ~guard);
-    if (model_->plan.empty()) continue;
+    if (!has_ending_clauses_) continue;
     const auto of_plan = in_solver(guards_[static_cast<std::size_t>(model_->horizon + t) - 1]);
     solver_->assume(t <= plan ? of_plan : ~of_plan);
   }

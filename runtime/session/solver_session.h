@@ -45,6 +45,12 @@ enum class Loading : std::uint8_t {
   kWitness,
 };
 
+/// Has the model clauses that bind a trace up to its end only, and not what the model does behind
+/// it: those of a plan, and of the bounds of objectives?
+bool has_ending_clauses(const CompiledModel& model);
+/// Is this one of them? A definition never is.
+bool ends_with_trace(const CompiledModel& model, std::size_t clause);
+
 /// One solver for one compiled model, whose horizon is chosen per call. Every clause of timepoint
 /// t carries the guard of t; a call with horizon n assumes the guards 1 .. n and drops the others,
 /// so learned clauses survive from one horizon to the next. As a rule the solver is handed the
@@ -96,7 +102,8 @@ class SolverSession {
   LengthVariables lengths_;
   std::int32_t variable_count_ = 0;
   Loading loading_;
-  std::vector<Literal> guards_;  // by timepoint - 1; of clauses of a plan horizon places later
+  bool has_ending_clauses_;
+  std::vector<Literal> guards_;  // by timepoint - 1; of clauses that end with the trace later
   std::vector<bool> values_;     // by variable - 1
   Timepoint loaded_ = -1;
   std::vector<std::vector<std::uint32_t>> clauses_at_;  // by timepoint; filled when first needed
