@@ -38,8 +38,11 @@ TEST_CASE("where a model was looked for in vain is an input, too") {
   file_in_scenarios(workspace, "worlds/office.sdf");
   file_in_scenarios(workspace, "worlds/models");
   std::filesystem::create_directory(workspace.folder() / "near");
-  REQUIRE(
-      workspace.load(scenario_with("  sdf: office.sdf\n  models: [near, models]\n")).has_value());
+  const auto loaded = workspace.load(scenario_with(
+      "  sdf: office.sdf\n  models: [near, models]\n"
+      "  bodies: {mug1: {settable: [x, y]}, cup: {size_m: [0.1, 0.1, 0.1], mass_kg: 0.2, "
+      "position_m: [5, 5, 0.05]}}\n"));
+  REQUIRE(loaded.has_value());
   const auto inputs = workspace.files.inputs();
   const auto near = std::filesystem::canonical(workspace.folder() / "near") / "mug";
   CHECK(std::count(inputs.begin(), inputs.end(), near.string()) > 0);
