@@ -54,12 +54,18 @@ bool Conformance::connect() {
   if (connected_once_) return true;
   report_.info = hello->info;
   if (report_.info.can("describe")) {
+    const auto before = info_faults(hello->info);
     const auto described = ask(DescribeRequest{}, options_.process.hello_timeout_s);
     if (!described) return false;
     if (const auto* world = std::get_if<DescribeReply>(&*described)) {
       report_.info.parameters = world->info.parameters;
       report_.info.actions = world->info.actions;
       report_.info.arguments = world->info.arguments;
+      // What the description replaces has to be right as well; the rest is told with it.
+      const auto after = info_faults(report_.info);
+      for (const auto& text : before) {
+        if (std::find(after.begin(), after.end(), text) == after.end()) fault(text);
+      }
     } else {
       fault("it says that it can `describe` and refuses it");
     }

@@ -311,8 +311,12 @@ bool ProcessSimulator::ensure_started() {
   auto& body = std::get<ReplyBody>(reply);
   if (auto* hello = std::get_if<HelloReply>(&body)) {
     info_ = std::move(hello->info);
-    if (info_.can("describe") && !ask_for_description()) return false;
-    const auto faults = info_faults(info_);
+    // A description replaces lists of the handshake, which have to be right as well.
+    auto faults = info_faults(info_);
+    if (faults.empty() && info_.can("describe")) {
+      if (!ask_for_description()) return false;
+      faults = info_faults(info_);
+    }
     if (faults.empty()) return true;
     lose(
         fmt::format("what it says of itself breaks the protocol, and `parallax adapter-check` "

@@ -62,6 +62,8 @@ std::string fish_values(const Option& option) {
   if (!words.empty()) return " -a " + for_fish(fmt::format("{}", fmt::join(words, " ")));
   switch (option.source) {
     case ValueSource::kFiles: {
+      // A list of files behind an optional `=` makes fish offer the option twice.
+      if (option.is_flag) return "";
       std::string out = option.endings.empty() ? " -F" : "";
       for (const auto& ending : option.endings) out += " (__fish_complete_suffix ." + ending + ")";
       return option.endings.empty() ? out : " -k -a " + for_fish(out.substr(1));

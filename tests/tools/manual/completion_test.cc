@@ -159,7 +159,7 @@ TEST_CASE("fish: commands, options, values and files") {
   const auto listed = listed_commands(fish.cli);
   CHECK(fish.offers("") == Words(listed.begin(), listed.end()));
   for (const auto* name : {"run", "suite", "traces", "ledger", "doctor"}) {
-    CAPTURE(name);
+    CAPTURE(std::string(name));
     const auto help = read_help(fish.cli.parallax({name, "--help"}).out);
     Words wanted;
     for (const auto& option : help.options) {
