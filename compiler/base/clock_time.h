@@ -15,7 +15,7 @@ inline constexpr double kLongestWait_s = 100.0 * 365.0 * 86400.0;
 /// The one place where seconds of files, options and simulators become ticks.
 SteadyClock::duration clock_duration(double seconds);
 
-/// The time so many seconds from now, as clock_duration has it.
+/// The time point `seconds` from now, saturated as by clock_duration.
 SteadyClock::time_point from_now(double seconds);
 
 /// The milliseconds that are left until `deadline`, rounded up, at most `most_ms`; 0 if it has
@@ -26,7 +26,7 @@ int milliseconds_left(SteadyClock::time_point deadline, int most_ms);
 /// clock_duration does.
 std::uint64_t whole_seconds(double seconds);
 
-/// Bytes of so many MiB, for limits of the system. Saturates at 2^62.
+/// Converts MiB to bytes, for limits of the system. Saturates at 2^62.
 std::uint64_t bytes_of_mb(std::int64_t mb);
 
 }  // namespace parallax::base

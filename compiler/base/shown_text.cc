@@ -17,7 +17,7 @@ bool is_direction_mark(char32_t c) {
          c == 0x200F || c == 0x061C || c == 0xFEFF;
 }
 
-/// What readers of lines pass over in front of a command.
+/// Blanks that CI systems skip in front of a command.
 bool is_blank(char32_t c) {
   return c == ' ' || c == '\t' || c == 0xA0 || c == 0x1680 || (c >= 0x2000 && c <= 0x200B) ||
          c == 0x202F || c == 0x205F || c == 0x3000;
@@ -82,7 +82,7 @@ std::string gated(std::string_view text, bool commands, bool colors) {
       length = own;
       out.append(text.substr(0, length));
     } else if (is_command) {
-      // Of `##vso[` the second sign: the first may follow a third one.
+      // Escape the second `#` of `##vso[`, since another `#` may stand before the first.
       if (text.front() == '#') out += '#', length = 2;
       out += escaped(static_cast<unsigned char>(text.front()));
     } else if (ends_line || text.front() == '\t') {

@@ -25,7 +25,7 @@ bool is_static(const TypedModel& model, SymbolId predicate) {
   return true;
 }
 
-/// Where Happens stands in the formula as something that is asked for: in the condition of
+/// Finds a Happens that the formula asks for: in the condition of
 /// `Happens(..) -> P(..)`, below `!` in `!Happens(..) | P(..)`.
 std::optional<TypedFormulaId> asked_event(const TypedModel& model, TypedFormulaId root) {
   std::set<std::uint32_t> positive;
@@ -66,7 +66,7 @@ void find_invented_predicates(const LintContext& context) {
       event_axiom = &axiom;
       event = *asked;
     }
-    // What only events bring about, such as what was visited, is defined by them.
+    // A predicate that only events bring about, such as Visited, is defined by them.
     if (event_axiom == nullptr || !has_definition) continue;
     const auto& term = model.formulas[event].terms[0];
     auto warning = context.sink().warning(codes::kInventedByEvent, event_axiom->source,

@@ -99,7 +99,7 @@ class HorizonRule {
     return std::nullopt;
   }
 
-  /// What must hold where the formula does (`wanted`), or where it does not.
+  /// Collects the conjuncts of the formula, or of its negation if it is not `wanted`.
   void conjuncts(TypedFormulaId id, bool wanted, std::vector<const TypedFormula*>& out) const {
     const auto& formula = model_.formulas[id];
     const auto each = [&](bool value) {
@@ -314,7 +314,7 @@ class HorizonRule {
     look(effect.condition, true, true);
   }
 
-  /// What a completed predicate has for reasons is where the rest of the formula holds and exists.
+  /// Checks the reasons of a completed predicate: where the rest of the formula holds and exists.
   void look_at_reasons(const Axiom& axiom) {
     std::vector<VariableId> variables;
     auto body = axiom.formula;

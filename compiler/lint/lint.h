@@ -28,8 +28,8 @@ std::span<const LintRule> lint_rules();
 /// W1101 by the lexer, W2001, W2007 and W2008 by the checker.
 std::span<const LintRule> difference_rules();
 
-/// What makes an answer about a horizon one about no longer horizon: for whoever asks for a proof
-/// up to one.
+/// Rules about formulas that make answers differ from one horizon to the next, for commands that
+/// prove something up to a horizon.
 std::span<const LintRule> horizon_rules();
 
 /// The codes of those differences that the old meaning follows: to be muted where it is asked for.

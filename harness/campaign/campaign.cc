@@ -203,14 +203,14 @@ class Campaign {
     return std::move(result_);
   }
 
-  /// What is known of the model's traces does not depend on what ended the simulations.
+  /// Keeps the result of the search for traces, whatever ended the simulations.
   void note_exploration() {
     if (result_.failed || family_.exploration() == "stopped" || !family_.all_given()) return;
     result_.exploration = family_.exploration();
     result_.bounds = traces_.bounds();
   }
 
-  /// What the search for traces says of those that are not among the simulated ones.
+  /// Describes the traces of the model that were not simulated.
   std::string other_traces_text(std::int64_t simulated) const {
     const auto all = result_.spending->traces().value_or(simulated);
     const std::string_view found = family_.exploration();

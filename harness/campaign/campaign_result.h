@@ -115,7 +115,7 @@ struct Discrepancy {
   State end;  // the variables that were compared, as last observed
 };
 
-/// What a clean simulation came to when it was made once more, with the same start and seed.
+/// The outcome of repeating a clean simulation with the same start and seed.
 struct Repetition {
   enum class Outcome : std::uint8_t {
     kSame,       // to the last bit

@@ -428,7 +428,7 @@ class LoopCampaign {
     stream.loop->causes_level = kRateLevel;
     const auto rated = lost_too_often_ ? rated_.planned() : rated_.counted();
     stream.loop->causes_unseen = rated - stream.loop->causes_runs;
-    // What stopped the run is no plan of it: the number of executions was not fixed.
+    // An interruption is not planned, so the number of executions was not fixed.
     const auto set = result_.interrupted ? set_anytime_interval : set_interval;
     for (auto& rate : causes) {
       set(rate, stream.loop->causes_runs, stream.loop->causes_unseen, kRateLevel);

@@ -52,8 +52,8 @@ class Estimator {
   }
 
  private:
-  /// What stopped the runs is no plan of theirs: their number was not fixed, so the intervals
-  /// become those that hold whenever one looks.
+  /// Replaces the intervals of an interrupted campaign by ones that hold at any stopping time, as
+  /// the number of runs was not fixed.
   void forget_plan(RatesResult& result) const {
     result.fixed_runs = false;
     for (auto& trace : result.traces) {

@@ -32,8 +32,8 @@ struct CleanSample {
 /// Makes both repetitions. Without those that were stopped. Closes the bench's workers.
 RepetitionResult repeat_clean(const CleanSample& sample, SimulatorBench& bench);
 
-/// What the repetitions say against the claims of a run, one sentence each; empty: nothing. Other
-/// bits count where the simulator promised the same ones.
+/// Doubts that the repetitions cast on the claims of a run, one sentence each. Different bits count
+/// only if the simulator promised bitwise repetition.
 std::vector<std::string> repetition_doubts(const RepetitionResult& result,
                                            const SimulatorInfo& simulator);
 

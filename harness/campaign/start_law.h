@@ -31,8 +31,8 @@ struct LawResult {
   std::string refused_text() const;
 };
 
-/// What of the start region the sampler never draws, for a claim: "its rim (`inset_m`: 0.05)".
-/// Empty where that is nothing, or the default inset and less than a thousandth of the region: the
+/// The part of the start region that is never drawn, for a claim: "its rim (`inset_m`: 0.05)".
+/// Empty if there is none, or for the default inset and less than a thousandth of the region: the
 /// figures of a claim have three digits.
 std::string left_out_text(const Sampler& sampler);
 

@@ -105,7 +105,7 @@ CertifiedBound stated_bound(const Tally& tally, const CriterionSpec& spec);
 /// How starts are drawn, in words.
 struct DrawnStarts {
   std::string law{};  // where they are not drawn uniformly
-  /// What of the region is never drawn: "its rim (`inset_m`: 0.05)". Empty: nothing that counts.
+  /// The part of the region that is never drawn: "its rim (`inset_m`: 0.05)". Empty: none.
   std::string left_out{};
 };
 

@@ -34,7 +34,7 @@ std::string level_text(double confidence);
 /// A small probability as a number with three significant digits: "1.24e-05".
 std::string small_figure(double probability, Round round);
 
-/// `value` with so many decimals, or as the shortest number that reads back to it beyond 15.
+/// `value` with `decimals` decimals, or as the shortest number that reads back to it beyond 15.
 std::string decimal_figure(double value, int decimals, Round round);
 
 /// A p-value with two significant digits, rounded up: "p = 0.0013".

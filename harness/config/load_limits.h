@@ -7,7 +7,7 @@
 
 namespace parallax::harness {
 
-/// What bounds the reading of a scenario.
+/// Limits on reading a scenario.
 struct LoadLimits {
   bool allow_outside = false;  // as in the load_scenario of scenario.h
   /// Ends the processes that read meshes and worlds of other formats when it is raised; what they

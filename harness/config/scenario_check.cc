@@ -204,7 +204,7 @@ std::vector<KindUse> kind_uses(const FluentBinding& binding, const GroundFluent&
   return out;
 }
 
-/// What a fluent reads as a flag, a number or a text must be one, or it never holds.
+/// Checks that a fluent's flag, number or text reads a variable of that type.
 void check_kinds(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
                  const std::vector<Parameter>& parameters, base::DiagnosticSink& sink) {
   const bool built_in = scenario.simulator.is_built_in();

@@ -36,8 +36,8 @@ WorldSpec read_world(const YamlNode& node, EngineKind engine, base::DiagnosticSi
 bool add_imported(YamlNode& root, const base::PathGate& gate, base::SourceFiles& files,
                   base::DiagnosticSink& sink, const std::atomic<bool>* stop = nullptr);
 
-/// Of a file that could not be read: reports kLimitReached in the place of what is wrong with it
-/// where that is only that the program is to end.
+/// Reports kLimitReached for a file that could not be read because the program is to end, in place
+/// of an error about the file.
 bool tell_if_stopped(const std::atomic<bool>* stop, const base::SourceRange& place,
                      base::DiagnosticSink& sink);
 

@@ -42,7 +42,7 @@ struct SuiteManifest {
   std::vector<ManifestCase> cases;
 };
 
-/// What a YAML file is to a suite.
+/// The role of a YAML file in a suite.
 enum class SuiteFileKind : std::uint8_t {
   kOther,     // neither of these
   kManifest,  // has a key `cases` at its outermost level

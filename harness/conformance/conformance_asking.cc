@@ -61,7 +61,7 @@ bool Conformance::connect() {
       report_.info.parameters = world->info.parameters;
       report_.info.actions = world->info.actions;
       report_.info.arguments = world->info.arguments;
-      // What the description replaces has to be right as well; the rest is told with it.
+      // Faults of lists that the description replaces; other faults are reported with it.
       const auto after = info_faults(report_.info);
       for (const auto& text : before) {
         if (std::find(after.begin(), after.end(), text) == after.end()) fault(text);

@@ -43,7 +43,7 @@ class Before {
 
   void restore() const {
     for (const State& state : states_) {
-      // What fell asleep has not moved.
+      // A body that is asleep has not moved.
       if (!state.enabled || dBodyIsEnabled(state.body) == 0) continue;
       dBodySetPosition(state.body, state.p[0], state.p[1], state.p[2]);
       dBodySetQuaternion(state.body, state.q);

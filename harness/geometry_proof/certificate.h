@@ -57,7 +57,7 @@ std::optional<std::string> read_certificate(std::string_view text, Certificate& 
 /// Do the boxes fill the region without overlapping, having come from halving it?
 bool fill(const std::vector<DecidedBox>& boxes, const StartBox& region);
 
-/// What a certificate must be about: a trace of a scenario as it is now. All outlive the check.
+/// The subject of a certificate: a trace of the scenario as it is now. All outlive the check.
 struct ProofSubject {
   const WorldSpec& spec;
   const WorldLayout& layout;
@@ -68,7 +68,7 @@ struct ProofSubject {
 /// The drawn variables of a start region, in the order of certificates, and their box.
 std::vector<std::string> drawn_variables(const StartCuboid& region, StartBox& box);
 
-/// What a check found of one test.
+/// The result of checking one test of a certificate.
 struct CheckedCertificate {
   std::size_t number = 0;  // of the action
   std::string event, function;

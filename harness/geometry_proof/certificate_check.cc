@@ -25,7 +25,7 @@ bool same_test(const CheckedTest& a, const CheckedTest& b) {
          a.refusal == b.refusal && a.statement == b.statement;
 }
 
-/// What a certificate says of an action that is not so; empty: nothing. `actual`: null where the
+/// The first wrong statement of a certificate about an action; empty: none. `actual` is null if the
 /// trace has no such action.
 std::string wrong_action(const ActionCertificate& said, const ProvableAction* actual,
                          const StartBox& region) {

@@ -23,8 +23,9 @@ inline constexpr double kMostAssumed = 10.0;
 /// from 0 to kMostAssumed. Returns what is wrong; empty: nothing.
 std::string wrong_assumption(double value);
 
-/// What is wrong with assumptions: a number beyond its range, a range of no slider of the world, of
-/// one that is named twice, or one that the slider's stops do not admit at all. Empty: nothing.
+/// The first fault of the assumptions: a number beyond its range, a range of no slider of the
+/// world, of one that is named twice, or one that the slider's stops do not admit at all. Empty:
+/// nothing.
 std::string wrong_assumptions(const ProofAssumptions& assumptions, const WorldLayout& layout);
 
 /// The assumptions by name, for people: "drift=0.001 (default 0.002)". One text for each value that

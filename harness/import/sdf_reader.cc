@@ -246,7 +246,7 @@ class SdfReader {
     } else if (root.Model() != nullptr) {
       const sdf::Model& model = *root.Model();
       math::Pose3d pose = model.RawPose();
-      // Of a placement frame the library tells where the model lies, not where the frame does.
+      // The library gives the pose of the model, not that of its placement frame.
       if (!model.PlacementFrameName().empty()) {
         leave("placement frames of models that stand in no world", model.Name(), "model");
       }

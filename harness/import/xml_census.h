@@ -10,7 +10,7 @@
 
 namespace parallax::harness {
 
-/// What a reader takes of the elements with one tag. Words are separated by blanks.
+/// The attributes and children that a reader takes over for one tag. Words are separated by blanks.
 struct TakenOf {
   std::string_view tag;
   std::string_view attributes;

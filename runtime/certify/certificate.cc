@@ -219,8 +219,8 @@ void CompletenessClaim::visit_model(const Visit& visit) const {
   }
 }
 
-/// Where a trace ends, at n, the constraints hold, and at no earlier timepoint (0 counts if it has
-/// a hit atom).
+/// States that a trace that ends at n meets the constraints there and at no earlier timepoint (0
+/// counts if it has a hit atom).
 void CompletenessClaim::visit_end(Timepoint n, const Visit& visit) const {
   const auto imply = [&](Literal consequence) {
     const Literal clause[] = {~lengths_.ends(n), consequence};

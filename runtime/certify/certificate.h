@@ -40,7 +40,7 @@ class CompletenessClaim {
   std::int64_t traces() const { return static_cast<std::int64_t>(traces_.size()); }
 
   std::int64_t variables() const { return variables_; }
-  /// What a search for traces may take for granted: the claim is about the whole horizon.
+  /// Literals that a search for traces may assume: the claim is about the whole horizon.
   std::vector<compiler::Literal> given() const;
   using Visit = std::function<void(std::span<const compiler::Literal>)>;
   void for_each_clause(const Visit& visit) const;

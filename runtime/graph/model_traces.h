@@ -52,8 +52,8 @@ struct TraceQuery {
   /// graph, so that the caller can use the graph, or count in another way before the next one.
   bool number_only = false;
   GraphLimits limits = {};
-  /// All traces are searched until so many literals have been set, and as many as two passes over
-  /// the whole model set, before a graph is tried: a few milliseconds.
+  /// Literals that the search for all traces sets, besides two passes over the whole model, before
+  /// a graph is tried: a few milliseconds.
   std::int64_t search_first = 20'000;
   /// Threads for a question that is hard for a solver (CubeOptions::jobs); 0: it is not cut.
   std::int64_t jobs = 0;
@@ -97,8 +97,8 @@ class ModelTraces final : public TraceSource {
   void seek(const mpz_class& before);
 
  private:
-  /// The graph is tried when so many traces have been given by a solver, or when the search has
-  /// cost as much as the attempts before.
+  /// An attempt at a graph: due once a solver has given `given` traces, or once the search has cost
+  /// as much as the last attempt.
   struct Attempt {
     std::int64_t given;
     GraphLimits limits;

@@ -148,7 +148,7 @@ class TraceGraph {
   std::size_t node_count() const { return nodes_.size(); }
   std::size_t edge_count() const { return edge_count_; }
   std::int64_t solve_calls() const;
-  /// What building it cost, as StepSolver::work.
+  /// The cost of building the graph, as StepSolver::work.
   std::int64_t work() const;
 
  private:

@@ -75,7 +75,7 @@ class SolverSession {
   /// is one: the first, which only needs the clauses up to `n`, refutes most of what can be
   /// refuted.
   SolveStatus solve_whole(Timepoint n, std::span<const Literal> assumptions);
-  /// Each solver call of the next `solve` or `solve_whole` answers kUnknown after so many.
+  /// Limits each solver call of the next `solve` or `solve_whole`, which then answers kUnknown.
   void limit_conflicts(std::int64_t most) { limit_ = most; }
   /// Value of a literal in the valuation that the last satisfiable call found; it stays available
   /// until the next satisfiable call.

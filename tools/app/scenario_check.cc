@@ -147,7 +147,7 @@ std::unique_ptr<harness::Simulator> tried_simulator(const ScenarioModel& loaded,
   return nullptr;
 }
 
-/// What the effect axioms of the model say that events do.
+/// The fluents that events initiate and terminate by the model's effect axioms.
 std::vector<harness::CausedFluent> caused_fluents(const compiler::TypedModel& model) {
   std::vector<harness::CausedFluent> out;
   for (const compiler::EffectAxiom& effect : model.effects) {

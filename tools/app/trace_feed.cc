@@ -36,8 +36,8 @@ std::string proof_remark(const Context& context, const compiler::CompiledModel& 
 /// Notes that say where a part of the contradiction stands; a screen has no room for more.
 constexpr std::size_t kMostBlamed = 6;
 
-/// What takes part in a contradiction: first what the author wrote as a statement of its own, then
-/// what follows from declarations; within a kind in the order of the core.
+/// The parts of a contradiction: statements of the author first, then consequences of declarations;
+/// within a kind in the order of the core.
 std::vector<const compiler::Origin*> blamed_origins(const compiler::CompiledModel& model,
                                                     const std::vector<std::uint32_t>& core) {
   std::vector<const compiler::Origin*> blamed;

@@ -33,7 +33,7 @@ struct Ending {
   std::string exploration = "stopped";
   bool complete = false;
   std::vector<std::string> bounds = {};  // why it is complete up to the bound only
-  /// Where prefixes that meet the constraints cannot go on, the first such length.
+  /// The least length of a prefix that meets the constraints and cannot go on, if there is one.
   std::optional<compiler::Timepoint> dead_end = std::nullopt;
   std::string in_all = {};  // up to symmetry: for how many traces those given stand
   bool searched = false;    // the certifier's solver found by itself that there are no others

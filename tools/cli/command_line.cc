@@ -184,8 +184,8 @@ bool is_value_of(const Option& flag, const OptionTable& table, const std::string
   return !std::filesystem::exists(word, error);
 }
 
-/// What is wrong with the file of a flag such as `--certify[=FILE]` that stands behind a blank; a
-/// blank ends such a flag, so the file would be taken for an argument. Empty: nothing.
+/// Detects `--certify FILE` without `=`: a blank ends a flag with an optional value, so the file
+/// would be taken for an argument. Returns the message, or an empty text.
 std::string detached_value(const OptionTable& table, int argc, char** argv) {
   for (int i = 1; i + 1 < argc; ++i) {
     const std::string word = argv[i];

@@ -9,15 +9,15 @@
 
 namespace parallax::tools {
 
-// What `parallax prove` prints. `simulated`: what simulations showed, test by test; may be empty.
+// Output of `parallax prove`. `simulated`: the results of simulations by test; may be empty.
 
-/// What was proved, as JSON without the boxes, and as text. `events`: of the trace.
+/// A proof as JSON, without its boxes, and as text. `events`: those of the trace.
 std::string proof_json(const harness::Certificate& certificate,
                        const std::vector<harness::SimulatedTest>& simulated);
 std::string proof_text(const harness::Certificate& certificate, std::string_view events,
                        const std::vector<harness::SimulatedTest>& simulated);
 
-/// What a check confirmed, of which tests, and under which assumptions.
+/// The result of a check: confirmed tests and their assumptions.
 std::string check_json(const harness::Certificate& certificate,
                        const harness::CertificateCheck& result,
                        const std::vector<harness::SimulatedTest>& simulated);

@@ -43,8 +43,8 @@ void tell_written(const std::vector<ChangedFile>& files, const std::vector<std::
   }
 }
 
-/// What --apply may change: the files of the current project, and those beside a scenario that the
-/// user named.
+/// Admits the files that --apply may change: those of the current project, and those beside a
+/// scenario that the user named.
 base::WriteGate write_gate(const RunFolderOptions& folder, const Invocation& invocation) {
   base::WriteGate gate(invocation.form().allow_outside);
   if (!folder.scenario.empty()) gate.admit_beside(folder.scenario);

@@ -219,7 +219,7 @@ Ran run_closed(const RunOptions& options, const ScenarioModel& loaded,
   return {std::move(result), (*loop)->solve_calls()};
 }
 
-/// Where nothing was found now with starts for which something was changed.
+/// Warns that a clean run used the starts for which a fault was mended.
 void warn_of_reused_starts(const harness::CampaignOptions& campaign,
                            const harness::CampaignResult& result, const harness::Scenario& scenario,
                            base::DiagnosticSink& sink) {

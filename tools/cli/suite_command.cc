@@ -80,7 +80,7 @@ bool is_folder(const std::filesystem::path& path) {
   return std::filesystem::is_directory(path, error);
 }
 
-/// Where nobody named the folder of results, links may not lead it elsewhere.
+/// Refuses a default output folder that a link leads elsewhere.
 base::Status check_suite_folder(const SuiteOptions& options, base::DiagnosticSink& sink) {
   if (options.out_given) return base::Unit{};
   return base::check_unnamed_output(options.out, ".", "--out", sink);

@@ -94,7 +94,7 @@ GrowthEvidence weigh_growth(const RateCounts& before, const RateCounts& after,
           fmt::format("bounds that hold whenever one looks {}", grew ? "part" : "overlap")};
 }
 
-/// What the two counts of one trace say.
+/// Judges the change between two counts of one trace.
 RuleOutcome weigh_change(const RateCounts& before, const RateCounts& after,
                          const harness::GateRules::Worse& worse, const SharedError& shared,
                          std::string& words) {

@@ -26,7 +26,7 @@ class Footprint {
   void add(const base::Captured& child);
   /// A file that the suite itself looks at.
   void add_input(const std::string& path) { inputs_.insert(path); }
-  /// Where a file lies that was read, or would have been.
+  /// Paths of files that were read, or that were looked for in vain.
   const std::set<std::string>& inputs() const { return inputs_; }
   /// Notes all of it in the result. No inputs are noted where one has changed since the beginning:
   /// nobody knows what was read then.

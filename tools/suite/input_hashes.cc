@@ -38,7 +38,7 @@ std::string hash_of_content(const fs::path& path) {
   return base::sha256_hex(text ? *text : "unreadable");
 }
 
-/// Where the path leads by links, from its folder; empty: through none.
+/// The target of the links on a path, relative to its folder; empty: there are none.
 std::string way_of_links(const fs::path& path) {
   std::error_code error;
   const auto named = fs::absolute(path, error).lexically_normal();

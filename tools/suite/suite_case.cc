@@ -180,7 +180,7 @@ void tell_stale_models(const harness::SuiteManifest& manifest, base::SourceFiles
   for (const auto& path : compiled) {
     base::SourceFiles own;
     base::DiagnosticSink found;
-    // What else is wrong with it its case says.
+    // Other faults are reported by its case.
     const bool reads_well = compiler::load_artifact(path, own, found).has_value();
     if (reads_well && found.warning_count() > 0) (void)compiler::load_artifact(path, files, sink);
   }

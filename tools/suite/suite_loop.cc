@@ -66,7 +66,7 @@ void Reuse::resume(const StoredCases& earlier, bool permits_more) {
     const bool finished =
         result.outcome != Outcome::kNotFinished && result.outcome != Outcome::kSkipped;
     if (permits_more && result.outcome == Outcome::kError) continue;
-    // What is expected may have changed where no file that was read has.
+    // The expectation may have changed although no file that was read has.
     if (at->second.one.revision != record_.cases()[i].revision) continue;
     if (!finished || result.inputs.empty() || !hashes_.unchanged(result.inputs)) continue;
     if (result.ledger != ledger_digest_of(cache_.key().ledger, record_.cases()[i])) continue;

@@ -108,7 +108,7 @@ std::vector<BodyShape> ring(int sides, double width_m, double height_m, double w
   return shapes;
 }
 
-/// What is drawn for one trial.
+/// The random numbers of one trial.
 struct Draw {
   explicit Draw(std::uint64_t seed) : rng(harness::DrawKey{seed, 0x67726970}) {}
   double between(double low, double high) { return low + (high - low) * rng.uniform(next++); }
