@@ -124,12 +124,7 @@ class ScenarioReader {
 
   void read(Scenario& scenario) {
     fields_.belongs(Key::kWorld, kWorldKeys);
-    fields_.only({Key::kInclude,   Key::kName,         Key::kModel,        Key::kPlan,
-                  Key::kBind,      Key::kConstraints,  Key::kHorizon,      Key::kEvents,
-                  Key::kWorld,     Key::kRegions,      Key::kMapping,      Key::kActions,
-                  Key::kSampling,  Key::kCriterion,    Key::kCompare,      Key::kExecution,
-                  Key::kStarts,    Key::kStartWeights, Key::kUntilCovered, Key::kMatch,
-                  Key::kSimulator, Key::kLimits,       Key::kSearch,       Key::kExpect});
+    fields_.only(kScenarioKeys);
     if (const auto* node = fields_.find(Key::kExecution)) {
       const auto choice =
           fields_.choice(Key::kExecution, "value of " + key_text(Key::kExecution), kExecutions);

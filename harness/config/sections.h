@@ -11,11 +11,20 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/config/keys.h"
 #include "harness/config/scenario.h"
 #include "harness/config/yaml_fields.h"
 #include "harness/world/world_spec.h"
 
 namespace parallax::harness {
+
+/// The outermost keys of a scenario.
+inline constexpr std::array<std::string_view, 24> kScenarioKeys = {
+    Key::kInclude,     Key::kName,    Key::kModel,        Key::kPlan,         Key::kBind,
+    Key::kConstraints, Key::kHorizon, Key::kEvents,       Key::kWorld,        Key::kRegions,
+    Key::kMapping,     Key::kActions, Key::kSampling,     Key::kCriterion,    Key::kCompare,
+    Key::kExecution,   Key::kStarts,  Key::kStartWeights, Key::kUntilCovered, Key::kMatch,
+    Key::kSimulator,   Key::kLimits,  Key::kSearch,       Key::kExpect};
 
 inline constexpr std::int64_t kMaxHorizon = 1'000'000;  // of scenarios and cases alike
 

@@ -160,6 +160,21 @@ std::string id_problem(std::string_view id) {
   return bad == id.end() ? "" : "it has other characters than letters, digits, `_`, `-` and `.`";
 }
 
+namespace {
+
+/// May a file without `expect` be a scenario? One with a model and a world may, and so may one with
+/// a model and a key that no scenario has: the key may be a misspelt `expect`. A file with a model
+/// alone is a part that others include.
+bool may_be_scenario(const YamlNode& root) {
+  if (root.find(Key::kModel) == nullptr) return false;
+  if (root.find(Key::kWorld) != nullptr || root.find(Key::kSimulator) != nullptr) return true;
+  return std::any_of(root.entries.begin(), root.entries.end(), [](const YamlEntry& entry) {
+    return std::find(kScenarioKeys.begin(), kScenarioKeys.end(), entry.key) == kScenarioKeys.end();
+  });
+}
+
+}  // namespace
+
 SuiteFileKind suite_file_kind(const std::filesystem::path& path, bool allow_outside) {
   base::SourceFiles files;
   base::DiagnosticSink unread;
@@ -169,10 +184,8 @@ SuiteFileKind suite_file_kind(const std::filesystem::path& path, bool allow_outs
     if (root->find(Key::kCases) != nullptr) return SuiteFileKind::kManifest;
     const auto* expect = root->find(Key::kExpect);
     // An empty one takes back what an included file expects.
-    const bool is_scenario = expect != nullptr ? expect->value.kind != YamlNode::Kind::kNull
-                                               : root->find(Key::kModel) != nullptr &&
-                                                     (root->find(Key::kWorld) != nullptr ||
-                                                      root->find(Key::kSimulator) != nullptr);
+    const bool is_scenario =
+        expect != nullptr ? expect->value.kind != YamlNode::Kind::kNull : may_be_scenario(*root);
     return is_scenario ? SuiteFileKind::kScenario : SuiteFileKind::kOther;
   }
   if (files.size() == 0) return SuiteFileKind::kBroken;
