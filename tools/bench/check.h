@@ -5,7 +5,7 @@
 namespace parallax::tools {
 
 struct CheckOptions {
-  std::string bounds = PARALLAX_SOURCE_DIR "/tools/bench/bounds.json";
+  std::string bounds;        // the file of bounds
   double build_cpu_s = 0.0;  // processor time of a build from nothing; 0: not looked at
   bool record = false;       // write what was measured into `bounds`
 };

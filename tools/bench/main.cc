@@ -111,6 +111,7 @@ int run(int argc, char** argv) {
       .show_default();
   bool checks = false;
   CheckOptions check;
+  check.bounds = PARALLAX_SOURCE_DIR "/tools/bench/bounds.json";
   table.flag("--check", checks, "Hold cheap questions against the recorded bounds, in a minute");
   table.flag("--record", check.record, "With --check: record what was measured as the new bounds");
   table.option("--bounds", check.bounds, "With --check: the file of bounds").show_default();
