@@ -18,6 +18,7 @@
 #include "compiler/ground/narrative.h"
 #include "compiler/ground/opaque_effects.h"
 #include "compiler/ground/possible_atoms.h"
+#include "compiler/ground/shared_instances.h"
 #include "compiler/ground/time_profile.h"
 #include "compiler/sema/axiom_shapes.h"
 
@@ -105,6 +106,7 @@ class Grounder {
   void other_axioms() {
     grounder_.use_effects(rows_);
     assert_axioms(std::nullopt);
+    if (!grounder_.failed()) report_shared_instances(model_, grounder_, sink_);
   }
 
   void completion() {

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include "compiler/base/codes/names.h"
+#include "compiler/sema/instance_existence.h"
 
 namespace parallax::compiler {
 
@@ -47,11 +49,12 @@ class ShapeReader {
   }
 
  private:
-  /// One step on the way from the root to a conjunct: variables or a condition.
+  enum class StepKind : std::uint8_t { kVariables, kCondition, kBeside };
+  /// One step on the way from the root to a conjunct.
   struct Prefix {
     std::optional<std::size_t> before;
-    TypedFormulaId formula;  // a kForall, or a condition
-    bool is_condition = false;
+    TypedFormulaId formula;  // a kForall, a condition, or a conjunct beside the way
+    StepKind kind = StepKind::kCondition;
   };
   struct Task {
     TypedFormulaId formula;
@@ -182,15 +185,21 @@ class ShapeReader {
       const TypedFormula& formula = at(task.formula);
       switch (formula.kind) {
         case FormulaKind::kForall:
-          stack.push_back({formula.children[0], extend(task.prefix, task.formula, false)});
+          stack.push_back(
+              {formula.children[0], extend(task.prefix, task.formula, StepKind::kVariables)});
           break;
         case FormulaKind::kImplies:
-          stack.push_back({formula.children[1], extend(task.prefix, formula.children[0], true)});
+          stack.push_back({formula.children[1],
+                           extend(task.prefix, formula.children[0], StepKind::kCondition)});
           break;
         case FormulaKind::kAnd:
           has_conjuncts_ = true;
           for (auto child = formula.children.rbegin(); child != formula.children.rend(); ++child) {
-            stack.push_back({*child, task.prefix});
+            auto prefix = task.prefix;
+            for (const auto other : formula.children) {
+              if (other != *child) prefix = extend(prefix, other, StepKind::kBeside);
+            }
+            stack.push_back({*child, prefix});
           }
           break;
         case FormulaKind::kTrue:
@@ -208,8 +217,8 @@ class ShapeReader {
     }
   }
 
-  std::size_t extend(std::optional<std::size_t> before, TypedFormulaId formula, bool condition) {
-    prefixes_.push_back({before, formula, condition});
+  std::size_t extend(std::optional<std::size_t> before, TypedFormulaId formula, StepKind kind) {
+    prefixes_.push_back({before, formula, kind});
     return prefixes_.size() - 1;
   }
 
@@ -224,9 +233,10 @@ class ShapeReader {
   void add_conjunct(const Task& task, TypedFormulaId root) {
     std::vector<VariableId> variables;
     std::vector<TypedFormulaId> conditions;
-    const auto steps = way(task.prefix);
+    auto steps = way(task.prefix);
+    const auto beside = take_beside(steps, task.formula);
     for (const auto& step : steps) {
-      if (step.is_condition) {
+      if (step.kind == StepKind::kCondition) {
         conditions.push_back(step.formula);
       } else {
         const auto& own = at(step.formula).variables;
@@ -234,12 +244,24 @@ class ShapeReader {
       }
     }
     const auto source = at(root).source;
-    if (const auto kind = effect(at(task.formula))) {
-      warn_about_shape(steps, task.formula, root);
+    const auto kind = effect(at(task.formula));
+    if (kind) warn_about_shape(steps, task.formula, root);
+    if (!beside.empty()) {
+      const auto condition = conjunction(conditions, task.formula);
+      model_.shared_instances.push_back({variables, condition,
+                                         existence_formula(model_, task.formula), beside,
+                                         at(task.formula).source});
+      for (const auto& other : beside) {
+        conditions.push_back(other.existence);
+        steps.push_back({std::nullopt, other.existence, StepKind::kCondition});
+      }
+    }
+    const bool shares = !beside.empty();
+    if (kind) {
       const auto condition = conjunction(std::move(conditions), task.formula);
       const auto& terms = at(task.formula).terms;
-      model_.effects.push_back(
-          {*kind, std::move(variables), condition, terms[0], terms[1], terms[2], label_, source});
+      model_.effects.push_back({*kind, std::move(variables), condition, terms[0], terms[1],
+                                terms[2], label_, source, shares});
     } else if (const auto path = trajectory(at(task.formula))) {
       const auto condition = conjunction(std::move(conditions), task.formula);
       const auto& terms = at(task.formula).terms;
@@ -249,6 +271,29 @@ class ShapeReader {
       const auto formula = rebuilt(steps, task.formula);
       model_.axioms.push_back({label_, formula, source, mentions_effects(model_, formula)});
     }
+  }
+
+  /// Takes the conjuncts beside the way out of `steps`. Those that may be missing where this one
+  /// exists come back, each as a formula that exists with it: an instance says all or nothing.
+  std::vector<SharedInstance::Part> take_beside(std::vector<Prefix>& steps,
+                                                TypedFormulaId conjunct) {
+    std::set<std::uint32_t> before_last;
+    collect_event_times(model_, conjunct, before_last);
+    if (trajectory(at(conjunct))) {
+      const auto& time = model_.terms[at(conjunct).terms[1]];
+      if (time.kind == TermKind::kVariable) before_last.insert(time.variable.index());
+    }
+    for (const auto& step : steps) {
+      if (step.kind == StepKind::kCondition) collect_event_times(model_, step.formula, before_last);
+    }
+    std::vector<SharedInstance::Part> found;
+    for (const auto& step : steps) {
+      if (step.kind != StepKind::kBeside) continue;
+      if (!may_lack_instances(model_, step.formula, before_last)) continue;
+      found.push_back({existence_formula(model_, step.formula), at(step.formula).source});
+    }
+    std::erase_if(steps, [](const Prefix& step) { return step.kind == StepKind::kBeside; });
+    return found;
   }
 
   TypedFormulaId conjunction(std::vector<TypedFormulaId> parts, TypedFormulaId head) {
@@ -266,7 +311,7 @@ class ShapeReader {
     for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
       TypedFormula formula;
       formula.source = at(conjunct).source;
-      if (step->is_condition) {
+      if (step->kind == StepKind::kCondition) {
         formula.kind = FormulaKind::kImplies;
         formula.children = {step->formula, conjunct};
       } else {
@@ -285,9 +330,9 @@ class ShapeReader {
                         TypedFormulaId root) {
     if (std::exchange(warned_, true)) return;
     std::string_view reason;
-    const bool one_quantifier = !steps.empty() && !steps.front().is_condition;
+    const bool one_quantifier = !steps.empty() && steps.front().kind == StepKind::kVariables;
     const std::size_t expected =
-        one_quantifier && steps.size() == 2 && steps[1].is_condition ? 2 : 1;
+        one_quantifier && steps.size() == 2 && steps[1].kind == StepKind::kCondition ? 2 : 1;
     if (!label_.empty()) {
       reason = "takes it for an ordinary formula, because it has a label";
     } else if (steps.empty() || !one_quantifier) {

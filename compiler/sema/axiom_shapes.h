@@ -11,7 +11,9 @@ namespace parallax::compiler {
 /// Sorts a formula that mentions Initiates, Terminates, Releases, Trajectory or AntiTrajectory
 /// into the model's axioms: `[v] c1 -> ([w] c2 -> A & B & ...)` with any nesting becomes an
 /// EffectAxiom or TrajectoryAxiom for each conjunct that is such an atom and an Axiom for each that
-/// is not. Conditions may mention effects (Mueller 2006, section 6.4.1, effect constraints). A
+/// is not. Where conjuncts can name something that does not exist, each of them carries the
+/// existence of the others as a condition (`existence_formula`): an instance says all or nothing.
+/// Conditions may mention effects (Mueller 2006, section 6.4.1, effect constraints). A
 /// formula that mentions them only in conditions, or inside the definition of another predicate,
 /// becomes an Axiom with `mentions_effects`. Any other place is an error (E2301), as is a
 /// trajectory in a condition (E2303). Mueller 2006, section 2.7.

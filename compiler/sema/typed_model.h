@@ -210,6 +210,8 @@ struct EffectAxiom {
   TermId event, fluent, time;
   std::string label;
   base::SourceRange source;
+  /// The condition also says that other conjuncts of the formula exist (SharedInstance).
+  bool shares_instances = false;
 };
 
 enum class TrajectoryKind : std::uint8_t { kTrajectory, kAntiTrajectory };
@@ -222,6 +224,21 @@ struct TrajectoryAxiom {
   TermId fluent, time, target, offset;
   std::string label;
   base::SourceRange source;
+};
+
+/// A conjunct of a formula that was taken apart into axioms, and the conjuncts beside it of which
+/// instances may be missing: `[variables] condition -> conjunct & part & ...`. An instance in which
+/// one of them is missing says nothing. The axiom of the conjunct has that in its condition.
+struct SharedInstance {
+  struct Part {
+    TypedFormulaId existence;  // true, with the instances of the part
+    base::SourceRange source;
+  };
+  std::vector<VariableId> variables;
+  TypedFormulaId condition;  // without the existence of the parts
+  TypedFormulaId existence;  // of the conjunct
+  std::vector<Part> parts;
+  base::SourceRange source;  // of the conjunct
 };
 
 /// `F(C1,...,Cn)=V.`: one entry of a function's table. Arguments and value are kObject, kInteger
@@ -279,8 +296,9 @@ struct TypedModel {
   std::vector<Completion> completions;
   std::vector<ObjectiveStatement> objectives;  // in source order
   CoreSymbols core;
-  std::vector<TrajectoryAxiom> trajectories;   // in source order
-  std::vector<FunctionValue> function_values;  // in source order
+  std::vector<TrajectoryAxiom> trajectories;     // in source order
+  std::vector<FunctionValue> function_values;    // in source order
+  std::vector<SharedInstance> shared_instances;  // in source order
   ModelOptions options;
 
   std::optional<SortId> find_sort(std::string_view name) const;

@@ -218,8 +218,8 @@ class OldEncoder : OldTerms {
     const auto& fluent = model_.terms[effect.fluent];
     const auto& event = model_.terms[effect.event];
     const auto& time = model_.terms[effect.time];
-    if (fluent.kind != TermKind::kApply || event.kind != TermKind::kApply ||
-        time.kind != TermKind::kVariable) {
+    if (effect.shares_instances || fluent.kind != TermKind::kApply ||
+        event.kind != TermKind::kApply || time.kind != TermKind::kVariable) {
       return false;
     }
     std::vector<std::uint32_t> known = {time.variable.index()};

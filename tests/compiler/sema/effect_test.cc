@@ -47,7 +47,9 @@ TEST_CASE("nested quantifiers, nested conditions and conjunctions are taken apar
         Strings{"[time] (Q() & P(A)) => Initiates(E(),F(),time)"});
   CHECK(shapes("[time] Q() -> Initiates(E(),F(),time) & Terminates(E(),G(A),time) & P(A).") ==
         Strings{"[time] Q() => Initiates(E(),F(),time)", "[time] Q() => Terminates(E(),G(A),time)",
-                "[time](Q() -> P(A))"});
+                "[time](Q() -> (((Happens(E(),time) & HoldsAt(F(),time)) -> (Happens(E(),time) & "
+                "HoldsAt(F(),time))) -> (((Happens(E(),time) & HoldsAt(G(A),time)) -> "
+                "(Happens(E(),time) & HoldsAt(G(A),time))) -> P(A))))"});
   CHECK(shapes("Initiates(E(),F(),2).") == Strings{"[] true => Initiates(E(),F(),2)"});
   CHECK(shapes("Sigma: [time] Initiates(E(),F(),time).") ==
         Strings{"Sigma: [time] true => Initiates(E(),F(),time)"});
