@@ -117,9 +117,9 @@ BodyShape read_shape(const YamlNode& node, std::string what, base::DiagnosticSin
   read_form(fields, shape);
   const Eigen::Vector3d middle = shape.p_BS;
   read_vector(fields, Key::kAtM, shape.p_BS);
-  fields.number(Key::kYawRad, kAnyNumber, shape.yaw_rad);
-  fields.number(Key::kPitchRad, kAnyNumber, shape.pitch_rad);
-  fields.number(Key::kRollRad, kAnyNumber, shape.roll_rad);
+  fields.angle(Key::kYawRad, shape.yaw_rad);
+  fields.angle(Key::kPitchRad, shape.pitch_rad);
+  fields.angle(Key::kRollRad, shape.roll_rad);
   if (shape.form == ShapeForm::kHull) {
     if (fields.find(Key::kAtM) == nullptr) shape.p_BS = Eigen::Vector3d::Zero();
     shape.p_BS += shape_rotation(shape) * middle;
@@ -217,7 +217,7 @@ GraspSpec read_grasp(const YamlNode& node, std::string what, base::DiagnosticSin
   }
   grasp.from_above =
       fields.choice(Key::kApproach, "approach of a grasp", kApproaches) == std::size_t{1};
-  fields.number(Key::kWristRad, kAnyNumber, grasp.wrist_rad);
+  fields.angle(Key::kWristRad, grasp.wrist_rad);
   fields.number(Key::kWidthM, kPositive, grasp.width_m);
   fields.number(Key::kEffortN, kPositive, grasp.effort_n);
   return grasp;
@@ -272,6 +272,12 @@ CameraSpec read_camera(const YamlNode& node, base::DiagnosticSink& sink) {
   read_pair(fields, Key::kRangeM, camera.min_range_m, camera.max_range_m);
   fields.number(Key::kMaxPanRad, kPositive, camera.max_pan_rad);
   read_pair(fields, Key::kTiltRad, camera.min_tilt_rad, camera.max_tilt_rad);
+  for (const auto& [key, angles] :
+       {std::pair{Key::kMaxPanRad, Interval{camera.max_pan_rad, camera.max_pan_rad}},
+        std::pair{Key::kTiltRad, Interval{camera.min_tilt_rad, camera.max_tilt_rad}}}) {
+    const auto* written = fields.find(key);
+    if (written != nullptr) (void)check_radians(angles, *written, key_text(key), fields.sink());
+  }
   if (const auto* detection = fields.find(Key::kDetection)) {
     camera.detection = read_detection(*detection, sink);
   }
@@ -365,7 +371,7 @@ BodySpec read_body(const YamlEntry& entry, base::DiagnosticSink& sink) {
   fields.number(Key::kMassKg, kNotNegative, body.mass_kg);
   fields.text(Key::kMaterial, body.material);
   read_vector(fields, Key::kPositionM, body.p_WB);
-  fields.number(Key::kYawRad, kAnyNumber, body.yaw_rad);
+  fields.angle(Key::kYawRad, body.yaw_rad);
   fields.boolean(Key::kGravity, body.gravity);
   fields.boolean(Key::kCollides, body.collides);
   fields.text(Key::kApart, body.apart);
@@ -389,7 +395,7 @@ HandleSpec read_handle(const YamlNode& node, base::DiagnosticSink& sink) {
   fields.require(Key::kAtM);
   read_vector(fields, Key::kAtM, handle.p_CH);
   read_vector(fields, Key::kApproach, handle.approach);
-  fields.number(Key::kWristRad, kAnyNumber, handle.wrist_rad);
+  fields.angle(Key::kWristRad, handle.wrist_rad);
   fields.number(Key::kWidthM, kPositive, handle.width_m);
   if (handle.approach.norm() < 1e-9) {
     sink.error(codes::kYamlOutOfBounds, node.range, key_text(Key::kApproach), "without a direction",
@@ -406,7 +412,7 @@ PlaceSpec read_place(const YamlEntry& entry, base::DiagnosticSink& sink) {
   fields.require(Key::kAtM);
   fields.text(Key::kFrame, place.frame);
   read_vector(fields, Key::kAtM, place.p_FP);
-  fields.number(Key::kYawRad, kAnyNumber, place.yaw_rad);
+  fields.angle(Key::kYawRad, place.yaw_rad);
   return place;
 }
 

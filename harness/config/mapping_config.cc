@@ -75,6 +75,7 @@ void read_start(const YamlNode& node, Region& region, base::DiagnosticSink& sink
       sink.error(codes::kReversedSampling, range->range, name, interval->lower, interval->upper);
       continue;
     }
+    if (axis == RegionAxis::kYaw && !check_radians(*interval, *range, name, sink)) continue;
     const auto& bound = region.on(axis);
     if (bound && bound->lower > bound->upper) continue;  // reported with the regions
     if (bound && (interval->lower < bound->lower || interval->upper > bound->upper)) {

@@ -194,11 +194,16 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
                                  const std::vector<std::string>& events,
                                  base::DiagnosticSink& sink);
 
-/// An event that is to make a fluent hold, or not hold, by an effect axiom of the model.
+/// An event that is to make a fluent hold, or not hold, by an effect axiom of the model; both are
+/// ground, so that names with placeholders (`{drawer}`) can be filled in.
 struct CausedFluent {
-  std::string event, fluent;
+  GroundFluent event, fluent;
   bool holds = true;
+  State planned{};  // arguments that the plan gives, laid over those of the action
 };
+
+/// Does the controller of the event lead a drawer or a door to a stop?
+bool leads_to_stop(const Scenario& scenario, const std::string& event);
 
 /// Reports a range of the mapping that the controller of an event leads a drawer or a door out of,
 /// although the event is to bring the fluent about: every simulation would be a discrepancy.

@@ -96,8 +96,6 @@ void warn_of_unused(const Scenario& scenario, const std::set<std::string>& fluen
   }
 }
 
-constexpr double kPlay_m = 0.005;  // stops give a little
-
 bool depends_on_event(const std::string& text) { return text.find('{') != std::string::npos; }
 
 class NameChecker {
@@ -213,6 +211,7 @@ base::Status check_variables(const Scenario& scenario, const std::vector<Paramet
     }
   }
   check_law(scenario, parameters, sink);
+  check_law_kinds(scenario, parameters, sink);
   if (sink.error_count() != errors_before) return sink.already_reported();
   return base::Unit{};
 }
@@ -320,97 +319,6 @@ void check_action_names(const Scenario& scenario, const std::vector<GroundFluent
         std::find_if(scenario.actions.begin(), scenario.actions.end(),
                      [&](const ActionBinding& a) { return a.event == event.symbol; });
     if (action != scenario.actions.end()) checker.check(*action, &event);
-  }
-}
-
-namespace {
-
-struct Stops {
-  std::string_view name;
-  std::optional<double> low, high;  // [m], or [rad] of a hinge
-};
-
-std::optional<Stops> stops_of(const WorldLayout& layout, std::string_view name) {
-  if (const auto slider = layout.find_slider(name)) {
-    const JointSpec& joint = layout.sliders[*slider];
-    return Stops{joint.name, joint.low_m, joint.high_m};
-  }
-  if (const auto hinge = layout.find_hinge(name)) {
-    const JointSpec& joint = layout.hinges[*hinge];
-    return Stops{joint.name, joint.low_rad, joint.high_rad};
-  }
-  return std::nullopt;
-}
-
-/// The stop that the controller leads a joint to; none where it leads none.
-std::optional<double> goal_of(std::string_view controller, const Stops& stops) {
-  if (controller == "open-drawer" || controller == "open-door") return stops.high;
-  if (controller == "close-drawer" || controller == "close-door") return stops.low;
-  return std::nullopt;
-}
-
-}  // namespace
-
-void check_stops(const Scenario& scenario, const std::vector<CausedFluent>& caused,
-                 base::DiagnosticSink& sink) {
-  const auto layout = lay_out(scenario.world);
-  std::set<std::string> reported;
-  for (const CausedFluent& one : caused) {
-    const auto action = std::find_if(scenario.actions.begin(), scenario.actions.end(),
-                                     [&](const ActionBinding& a) { return a.event == one.event; });
-    const auto* binding = scenario.mapping->find(one.fluent);
-    const auto* range =
-        binding == nullptr ? nullptr : std::get_if<RangeBinding>(&binding->condition);
-    if (action == scenario.actions.end() || range == nullptr) continue;
-    const auto joint = action->arguments.find("joint");
-    const auto* name =
-        joint == action->arguments.end() ? nullptr : std::get_if<std::string>(&joint->second);
-    // A joint that depends on the event may be any; then the fluent of each is looked at elsewhere.
-    if (name == nullptr || range->variable != *name + ".q") continue;
-    const auto stops = stops_of(layout, *name);
-    const auto goal = stops ? goal_of(action->controller, *stops) : std::nullopt;
-    if (!goal) continue;
-    const auto lies_in = [&](const Interval& at) {
-      return at.lower <= *goal + kPlay_m && *goal <= at.upper + kPlay_m;
-    };
-    const Interval &wanted = one.holds ? range->holds : range->fails,
-                   &other = one.holds ? range->fails : range->holds;
-    if (lies_in(wanted) || !lies_in(other) || !reported.insert(one.fluent).second) continue;
-    const auto key = one.holds ? Key::kHolds : Key::kFails;
-    sink.error(
-        codes::kBadWorld, binding->source, fmt::format("mapping/{}/{}", one.fluent, key),
-        fmt::format("is from {:g} to {:g}, but the event `{}` is to make it so that `{}` {}, "
-                    "and its controller `{}` leads `{}` to its stop at {:g}",
-                    wanted.lower, wanted.upper, one.event, one.fluent,
-                    one.holds ? "holds" : "does not hold", action->controller, *name, *goal));
-  }
-}
-
-void check_ranges(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
-                  base::DiagnosticSink& sink) {
-  const auto layout = lay_out(scenario.world);
-  std::set<std::string> reported;
-  for (const auto& fluent : fluents) {
-    const auto* binding = scenario.mapping->find(fluent.symbol);
-    const auto* range =
-        binding == nullptr ? nullptr : std::get_if<RangeBinding>(&binding->condition);
-    if (range == nullptr) continue;
-    auto variable = with_arguments(range->variable, fluent);
-    if (!variable.ends_with(".q")) continue;
-    const auto stops = stops_of(layout, std::string_view(variable).substr(0, variable.size() - 2));
-    if (!stops) continue;
-    for (const auto& [key, interval] :
-         {std::pair{Key::kHolds, &range->holds}, std::pair{Key::kFails, &range->fails}}) {
-      const bool met = (!stops->high || interval->lower <= *stops->high + kPlay_m) &&
-                       (!stops->low || interval->upper >= *stops->low - kPlay_m);
-      if (met || !reported.insert(fluent.symbol + std::string(key)).second) continue;
-      sink.error(
-          codes::kBadWorld, binding->source, fmt::format("mapping/{}/{}", fluent.symbol, key),
-          fmt::format("is from {:g} to {:g}, which `{}` never reaches: it moves from {} to {}",
-                      interval->lower, interval->upper, stops->name,
-                      stops->low ? fmt::format("{:g}", *stops->low) : "anywhere below",
-                      stops->high ? fmt::format("{:g}", *stops->high) : "anywhere above"));
-    }
   }
 }
 

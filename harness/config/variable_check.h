@@ -7,11 +7,17 @@
 
 namespace parallax::harness {
 
-/// Checks that a fluent's flag, number or text reads a variable of that type.
+/// Checks that fluents read variables of the type that their mapping asks for, and that intervals
+/// and borders of angles are in radians. One report for each entry of the mapping.
 void check_kinds(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
                  const std::vector<Parameter>& parameters, base::DiagnosticSink& sink);
 
-/// Angles are in radians: an interval of more than a turn, or one far from any turn, is in degrees.
+/// Checks that formulas and conditions of `sampling` read numbers alone.
+void check_law_kinds(const Scenario& scenario, const std::vector<Parameter>& parameters,
+                     base::DiagnosticSink& sink);
+
+/// Checks that an angle is sampled in radians (angle_fault). Of a normal law without bounds the
+/// mean and one standard deviation count: its tails may go round.
 void check_angle(const SampledDimension& dimension, const Parameter& parameter,
                  const Scenario& scenario, base::DiagnosticSink& sink);
 

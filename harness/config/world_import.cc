@@ -312,7 +312,7 @@ class WorldImporter {
     }
     if (const auto* file = fields.require(Key::kFile)) set_file(*file, Key::kFile);
     read_vector(fields, Key::kAtM, input_.p_WI);
-    fields.number(Key::kYawRad, kAnyNumber, input_.yaw_rad);
+    fields.angle(Key::kYawRad, input_.yaw_rad);
     fields.boolean(Key::kFixed, input_.fixed);
   }
 

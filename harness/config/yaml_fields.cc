@@ -10,6 +10,7 @@
 #include "compiler/base/ascii.h"
 #include "compiler/base/codes/scenarios.h"
 #include "compiler/base/suggest.h"
+#include "harness/region/angle_range.h"
 
 namespace parallax::harness {
 namespace {
@@ -111,6 +112,13 @@ std::optional<double> read_number(const YamlNode& node, std::string_view name,
   return value;
 }
 
+bool check_radians(const Interval& angles_rad, const YamlNode& node, std::string_view name,
+                   base::DiagnosticSink& sink) {
+  const auto fault = angle_fault(angles_rad);
+  if (fault) sink.error(codes::kBadWorld, node.range, name, *fault);
+  return !fault;
+}
+
 std::optional<std::string> read_text(const YamlNode& node, std::string_view name,
                                      base::DiagnosticSink& sink) {
   if (node.is_scalar() && !node.text.empty()) return node.text;
@@ -202,6 +210,13 @@ void YamlFields::number(std::string_view key, const NumberBounds& bounds,
   const auto* value = find(key);
   if (value == nullptr) return;
   if (const auto read = read_number(*value, name_of(key), bounds, sink_)) out = read;
+}
+
+void YamlFields::angle(std::string_view key, double& out) const {
+  std::optional<double> value;
+  number(key, kAnyNumber, value);
+  if (!value || !check_radians({*value, *value, true}, *find(key), name_of(key), sink_)) return;
+  out = *value;
 }
 
 void YamlFields::integer(std::string_view key, std::int64_t lower, std::int64_t upper,

@@ -59,6 +59,8 @@ class YamlFields {
 
   void number(std::string_view key, const NumberBounds& bounds, double& out) const;
   void number(std::string_view key, const NumberBounds& bounds, std::optional<double>& out) const;
+  /// A number of radians; one in degrees is refused where it shows (angle_fault).
+  void angle(std::string_view key, double& out) const;
   void integer(std::string_view key, std::int64_t lower, std::int64_t upper,
                std::int64_t& out) const;
   void integer(std::string_view key, std::int64_t lower, std::int64_t upper,
@@ -91,6 +93,9 @@ std::optional<double> read_number(const YamlNode& node, std::string_view name,
                                   const NumberBounds& bounds, base::DiagnosticSink& sink);
 std::optional<std::string> read_text(const YamlNode& node, std::string_view name,
                                      base::DiagnosticSink& sink);
+/// Reports an interval of angles, or one angle, that is in degrees; true if it is not.
+bool check_radians(const Interval& angles_rad, const YamlNode& node, std::string_view name,
+                   base::DiagnosticSink& sink);
 /// A number, or a list of two in either order: the order is the caller's to check.
 std::optional<Interval> read_interval(const YamlNode& node, std::string_view name,
                                       base::DiagnosticSink& sink);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "compiler/base/codes/scenarios.h"
+#include "harness/region/angle_range.h"
 #include "harness/region/region.h"
 
 namespace parallax::harness {
@@ -44,6 +45,8 @@ bool check_bounds(const Region& region, DiagnosticSink& sink) {
           .fix(fmt::format("write {}: [{}, {}]", name, bound->upper, bound->lower));
     } else if (bound->lower == bound->upper) {
       sink.error(codes::kRegionEmpty, region.source, region.name, name, bound->lower);
+    } else if (const auto fault = axis == RegionAxis::kYaw ? angle_fault(*bound) : std::nullopt) {
+      sink.error(codes::kRegionAngle, region.source, region.name, *fault);
     } else {
       continue;
     }

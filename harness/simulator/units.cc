@@ -97,6 +97,11 @@ std::optional<double> greatest(const std::string& name, const std::vector<State>
 
 }  // namespace
 
+bool is_unit_of_numbers(std::string_view unit) {
+  return !unit.empty() && unit != "1" &&
+         std::find(kUnits.begin(), kUnits.end(), unit) != kUnits.end();
+}
+
 std::vector<UnitFinding> unit_findings(const SimulatorInfo& info, const std::vector<State>& seen) {
   std::vector<UnitFinding> findings;
   for (const auto& parameter : info.parameters) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/simulator/simulator.h"
@@ -12,6 +13,9 @@ struct UnitFinding {
   bool is_fault = false;  // else worth a look
   std::string text;
 };
+
+/// Is it a unit of the protocol other than 1, so that what is in it is a number?
+bool is_unit_of_numbers(std::string_view unit);
 
 /// Names against units ("box.yaw" in "m"), units that are none of SI ("deg", "mm"), angles beyond a
 /// full turn, lengths beyond 10 km. `seen`: all states that were observed.

@@ -45,8 +45,8 @@ ArgumentBounds bounds_of(const ArgumentSpec& argument) {
                                                     {"m/s", 100.0},
                                                     {"m/s^2", 1000.0},
                                                     {"n", 1e6},
-                                                    {"rad", 1000.0},
-                                                    {"rad/s", 100.0},
+                                                    {"rad", 6.3},     // a turn
+                                                    {"rad/s", 12.6},  // two turns a second
                                                     {"s", 86400.0}}};
   const auto found = std::find_if(kLimits.begin(), kLimits.end(),
                                   [&](const Limit& limit) { return limit.unit == argument.unit; });

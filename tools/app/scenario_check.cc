@@ -15,7 +15,9 @@
 #include "harness/discrete/model_simulator.h"
 #include "harness/robot/ode_simulator.h"
 #include "runtime/enumerate/plan_enumerator.h"
+#include "tools/app/caused_fluents.h"
 #include "tools/app/closed_loop.h"
+#include "tools/app/open_starts.h"
 #include "tools/app/trace_feed.h"
 
 namespace parallax::tools {
@@ -147,15 +149,25 @@ std::unique_ptr<harness::Simulator> tried_simulator(const ScenarioModel& loaded,
   return nullptr;
 }
 
-/// The fluents that events initiate and terminate by the model's effect axioms.
-std::vector<harness::CausedFluent> caused_fluents(const compiler::TypedModel& model) {
+/// The ground symbols of a model, taken apart.
+template <typename Named>
+std::vector<harness::GroundFluent> ground_of(const Named& all) {
+  std::vector<harness::GroundFluent> out;
+  for (const auto& one : all) out.push_back(harness::ground_fluent(one.name));
+  return out;
+}
+
+/// What the events of a trace cause, with the arguments that the plan gives them.
+std::vector<harness::CausedFluent> planned_fluents(
+    const harness::CampaignTrace& trace, const std::vector<harness::CausedFluent>& caused) {
   std::vector<harness::CausedFluent> out;
-  for (const compiler::EffectAxiom& effect : model.effects) {
-    const auto &event = model.terms[effect.event], &fluent = model.terms[effect.fluent];
-    const bool named = event.kind == TermKind::kApply && fluent.kind == TermKind::kApply;
-    if (!named || effect.kind == compiler::EffectKind::kReleases) continue;
-    out.push_back({model.symbols[event.symbol].name, model.symbols[fluent.symbol].name,
-                   effect.kind == compiler::EffectKind::kInitiates});
+  for (std::size_t t = 0; t < trace.event_count(); ++t) {
+    if (trace.plan[t].arguments.empty()) continue;
+    for (const auto& one : caused) {
+      if (one.event.text != trace.event(t)) continue;
+      out.push_back(one);
+      out.back().planned = trace.plan[t].arguments;
+    }
   }
   return out;
 }
@@ -195,11 +207,16 @@ void check_before_run(const ScenarioModel& loaded, Context& context) {
   auto& sink = context.sink();
   const auto& scenario = loaded.scenario;
   const auto& model = loaded.compilation.model;
+  std::vector<harness::CausedFluent> caused;
   if (scenario.simulator.is_built_in() && scenario.mapping && loaded.compilation.typed) {
     const auto errors_before = sink.error_count();
-    harness::check_stops(scenario, caused_fluents(*loaded.compilation.typed), sink);
+    caused = caused_fluents(
+        *loaded.compilation.typed, ground_of(model.events), ground_of(model.fluents),
+        [&](const std::string& event) { return harness::leads_to_stop(scenario, event); });
+    harness::check_stops(scenario, caused, sink);
     if (sink.error_count() != errors_before) return;
   }
+  report_open_starts(loaded, context);
   if (scenario.execution == harness::Execution::kClosedLoop) {
     return check_before_executions(loaded, context);
   }
@@ -222,10 +239,12 @@ void check_before_run(const ScenarioModel& loaded, Context& context) {
     if (!trace || !*trace) return;
     const auto prepared = harness::prepare_trace(scenario, fluents.ground(), info, **trace, sink);
     if (!prepared) return;
+    const auto errors_before = sink.error_count();
+    harness::check_stops(scenario, planned_fluents(**trace, caused), sink);
+    if (sink.error_count() != errors_before) return;
     if (!simulator || !tried.insert(fmt::format("{}", fmt::join((*trace)->holds(0), ";"))).second) {
       continue;
     }
-    const auto errors_before = sink.error_count();
     harness::check_first_start(
         scenario, **trace, *prepared, fluents, kSeedTried, *simulator,
         [&] { return context.stopped(); }, sink);

@@ -232,8 +232,13 @@ TEST_CASE("variables that depend on a fluent's arguments must be observed, each 
     std::vector<GroundFluent> ground;
     for (const auto& fluent : fluents) ground.push_back(ground_fluent(fluent));
     CHECK(check_against_simulator(*scenario, ground, info, workspace.sink).has_value());
-    for (const auto* name : {"box.held", "box.x", "box.y", "box.yaw", "robot.x"}) {
-      info.parameters.push_back({name, "1", true});
+    for (const auto& [name, unit] :
+         std::vector<std::pair<std::string, std::string>>{{"box.held", "1"},
+                                                          {"box.x", "m"},
+                                                          {"box.y", "m"},
+                                                          {"box.yaw", "rad"},
+                                                          {"robot.x", "m"}}) {
+      info.parameters.push_back({name, unit, true});
     }
     CHECK_FALSE(check_against_simulator(*scenario, ground, info, workspace.sink).has_value());
     CHECK(workspace.reports().size() == 1);
