@@ -39,12 +39,11 @@ class DomainWriter {
     const auto& name = names_.sort(id);
     const bool time = id == model_.core.time;
     if (time && declared.ranges.size() == 1) {
-      text_ += "#const horizon = " + std::to_string(declared.ranges[0].upper) + ".\n" +
-               applied(name, {std::to_string(declared.ranges[0].lower) + "..horizon"}) + ".\n";
+      text_ += "#const horizon = " + upper(declared.ranges[0]) + ".\n" +
+               applied(name, {lower(declared.ranges[0]) + "..horizon"}) + ".\n";
     } else {
       for (const auto& range : declared.ranges) {
-        text_ += applied(name, {std::to_string(range.lower) + ".." + std::to_string(range.upper)}) +
-                 ".\n";
+        text_ += applied(name, {lower(range) + ".." + upper(range)}) + ".\n";
       }
     }
     std::string constants;
@@ -60,6 +59,13 @@ class DomainWriter {
     }
     constructors(id);
     text_ += "#defined " + name + "/1.\n";
+  }
+
+  std::string lower(const Sort::Range& range) const {
+    return terms_.number(range.lower, range.declared);
+  }
+  std::string upper(const Sort::Range& range) const {
+    return terms_.number(range.upper, range.declared);
   }
 
   void constructors(SortId id) {

@@ -99,6 +99,9 @@ class TermWriter {
   /// True for an integer sort without a range: every integer may stand where it is declared.
   bool is_unbounded(SortId sort) const;
 
+  /// The number as it stands; reported (E3050) at `source` where it does not fit 32 bits.
+  std::string number(std::int64_t value, base::SourceRange source) const;
+
  private:
   AspTerm leaf(const Term& node);
   AspTerm combined(TermId id, std::vector<AspTerm> arguments);
@@ -106,7 +109,6 @@ class TermWriter {
   void require_member(const Term& node, SortId sort, AspTerm& value) const;
   bool surely_member(const Term& node, SortId sort) const;
   bool never_negative(TermId id) const;
-  std::string number(std::int64_t value, base::SourceRange source) const;
 
   const TypedModel& model_;
   const AspNames& names_;

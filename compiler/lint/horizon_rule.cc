@@ -84,7 +84,9 @@ class HorizonRule {
       return std::nullopt;
     }
     constexpr std::int64_t kMost = 1'000'000'000;
-    if (std::abs(left->number) > kMost || std::abs(right->number) > kMost) return std::nullopt;
+    // The least integer has no absolute value.
+    const auto is_far = [](std::int64_t number) { return number > kMost || number < -kMost; };
+    if (is_far(left->number) || is_far(right->number)) return std::nullopt;
     return Linear{left->variable ? left->variable : right->variable,
                   left->number + (minus ? -right->number : right->number)};
   }

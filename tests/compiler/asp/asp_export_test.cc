@@ -97,6 +97,8 @@ TEST_CASE("completion: an open occurrence gives a rule for the atom, a hidden on
 TEST_CASE("a number of more than 32 bits is reported where it stands") {
   const Exported exported("range time 0 1\nfluent F()\nHoldsAt(F(),0) | 3000000000=1.\n");
   CHECK(exported.places() == Strings{"E3050 3:18-27"});
+  const Exported ranges("range time 0 1\nsort k: integer\nrange k -3000000000 3\nfluent F(k)\n");
+  CHECK(ranges.places() == Strings{"E3050 3:1-21"});
 }
 
 TEST_CASE("formulas nested eight thousand deep are exported in linear space") {
