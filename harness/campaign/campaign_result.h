@@ -158,8 +158,10 @@ struct TraceResult {
   std::int64_t clean = 0;
   std::int64_t admitted = 0;  // of the clean ones: went otherwise, as the model admits
   std::int64_t lost = 0;
-  std::int64_t retried = 0;   // lost at first and observed at the second attempt
-  std::int64_t rejected = 0;  // invalid starts that were drawn again
+  std::int64_t of_the_solver = 0;   // of the lost ones: taken back by the simulator (kOfTheSolver)
+  std::string first_of_the_solver;  // why the first of them was
+  std::int64_t retried = 0;         // lost at first and observed at the second attempt
+  std::int64_t rejected = 0;        // invalid starts that were drawn again
   /// Of the clean ones: differed on the way, where only the end is compared.
   std::int64_t strayed = 0;
   double certified_level = 0.0;    // C

@@ -304,7 +304,7 @@ class LoopCampaign {
       if (bounds_) bounds_->add_lost();
       (void)rated_.next();  // it has its place, but what it would have shown is not known
     }
-    ++stream_.lost;
+    count_loss(record, stream_);
     tell(record, "lost");
     lost_too_often_ = bench_.lost_too_often(record, samples_.on_record(record));
     consumed_.push_back(std::move(record));

@@ -136,6 +136,7 @@ class Estimator {
       case SampleVerdict::kLost:
       case SampleVerdict::kLostTooOften:
         ++rates.lost;
+        if (is_of_the_solver(record)) ++rates.of_the_solver;
         return tell(sample, nullptr);
       case SampleVerdict::kAsPredicted:
       case SampleVerdict::kAdmitted:

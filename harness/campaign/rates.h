@@ -16,6 +16,7 @@ struct TraceRates {
   std::string trace;      // its events
   std::int64_t runs = 0;  // seen to their end
   std::int64_t lost = 0;
+  std::int64_t of_the_solver = 0;  // of the lost ones: taken back by the simulator (kOfTheSolver)
   /// Lost, or not made because the simulator was lost too often: what they would have shown is not
   /// known, and intervals allow for either.
   std::int64_t unseen = 0;

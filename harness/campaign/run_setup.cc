@@ -105,7 +105,23 @@ std::string unseen_text(std::int64_t unseen) {
                      unseen == 1 ? "its" : "their", unseen == 1 ? "it" : "they");
 }
 
+void count_loss(const SampleRecord& record, TraceResult& result) {
+  ++result.lost;
+  if (!is_of_the_solver(record)) return;
+  if (result.of_the_solver++ == 0) {
+    result.first_of_the_solver =
+        fmt::format("{}.{} {}", record.trace, record.sample, record.reason);
+  }
+}
+
 void add_loss_caveats(TraceResult& result) {
+  if (result.of_the_solver > 0) {
+    result.caveats.push_back(fmt::format(
+        "{} not counted as a discrepancy but as lost, because the solver made up what it showed: "
+        "{}",
+        result.of_the_solver == 1 ? "1 run is" : fmt::format("{} runs are", result.of_the_solver),
+        result.first_of_the_solver));
+  }
   if (result.retried > 0) {
     result.caveats.push_back(fmt::format(
         "{} lost at first and observed when repeated with the same start and seed",

@@ -66,7 +66,10 @@ void set_anytime_interval(CauseRate& rate, std::int64_t runs, std::int64_t unsee
 /// "15 runs were not seen to their end: the intervals allow for whatever they would have shown"
 std::string unseen_text(std::int64_t unseen);
 
-/// Caveats about losses that were repeated and runs that strayed.
+/// Counts a lost simulation.
+void count_loss(const SampleRecord& record, TraceResult& result);
+
+/// Caveats about losses that were repeated or are of the solver, and runs that strayed.
 void add_loss_caveats(TraceResult& result);
 
 /// Caveats about a simulator without seeds, and a discrepancy that could not be repeated (null:

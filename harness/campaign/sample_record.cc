@@ -72,6 +72,10 @@ std::string_view to_string(PathEnd end) {
   return kWords[static_cast<std::size_t>(end)];
 }
 
+bool is_of_the_solver(const SampleRecord& record) {
+  return record.reason.starts_with(kOfTheSolver);
+}
+
 std::string digest_of(const SampleRecord& record) {
   if (record.observations.empty()) return {};
   const auto found = record.observations.back().find("digest");

@@ -101,6 +101,9 @@ struct SampleRecord {
   friend bool operator==(const SampleRecord&, const SampleRecord&) = default;
 };
 
+/// Was it lost because the simulator took back what it showed (kOfTheSolver)?
+bool is_of_the_solver(const SampleRecord& record);
+
 /// The digest that the last observation shows; empty if it shows none.
 std::string digest_of(const SampleRecord& record);
 

@@ -224,13 +224,13 @@ const ActionBinding* action_of(const Scenario& scenario, const GroundFluent& eve
 }  // namespace
 
 /// A loss may be an accident of the machine: where the same start and seed give the same run, they
-/// get a second chance.
+/// get a second chance. What a simulator took back comes of them, and would come again.
 std::optional<SimStatus> simulate_start(ActionSource& actions, bool repeats_losses,
                                         Simulator& simulator, SampleRecord& record,
                                         const std::function<bool()>& abandoned) {
   Attempt attempt(actions, simulator, record);
   auto status = attempt.run(abandoned);
-  if (status == SimStatus::kLost && repeats_losses && !abandoned()) {
+  if (status == SimStatus::kLost && repeats_losses && !is_of_the_solver(record) && !abandoned()) {
     ++record.retries;
     status = attempt.run(abandoned);
   }

@@ -144,7 +144,7 @@ class TraceCampaign {
       case SampleVerdict::kLost:
       case SampleVerdict::kLostTooOften:
         tally_.add_lost();
-        ++result.lost;
+        count_loss(sample.record, result);
         break;
       case SampleVerdict::kDiscrepancy:
         return accept_discrepancy(std::move(sample));

@@ -65,6 +65,11 @@ std::string rates_text(const RatesResult& result) {
       if (!refused.empty()) out += fmt::format("  refused: {}\n", refused);
     }
     if (!trace.left_out.empty()) out += fmt::format("  left out: {}\n", trace.left_out);
+    if (trace.of_the_solver > 0) {
+      out += fmt::format(
+          "  {} of the lost ones showed what the solver made up, and are no discrepancies\n",
+          trace.of_the_solver);
+    }
     if (trace.unseen > 0) out += "  " + unseen_text(trace.unseen) + "\n";
     out += fmt::format("  {:>6} of {:<6} {:<26} any discrepancy\n", trace.any.count, trace.runs,
                        percent(trace.any, trace.runs));
@@ -111,6 +116,7 @@ std::string rates_json(const RatesResult& result) {
                                   {"any", rate_object(trace.any)},
                                   {"causes", std::move(causes)}});
     auto& object = document["traces"].back();
+    if (trace.of_the_solver > 0) object["of_the_solver"] = trace.of_the_solver;
     if (trace.law) object["law"] = law_json<Json>(*trace.law);
     if (!trace.left_out.empty()) object["left_out"] = trace.left_out;
     if (result.until_width > 0.0) object["narrow"] = !result.is_too_wide(trace);

@@ -141,6 +141,7 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
               {"retried", result.retried},
               {"rejected", result.rejected},
               {"strayed", result.strayed}};
+  if (result.of_the_solver > 0) out["of_the_solver"] = result.of_the_solver;
   out["certified"] = {{"confidence", result.certified_level},
                       {"epsilon", result.certified_epsilon}};
   out["error_share"] = result.error_share;

@@ -93,6 +93,10 @@ bool Arm::tool_at_rest() const {
   return std::visit([](const auto& carrier) { return carrier.at_rest(); }, carrier_);
 }
 
+double Arm::asked_acceleration() const {
+  return std::visit([](const auto& carrier) { return carrier.asked_acceleration(); }, carrier_);
+}
+
 Eigen::Vector3d Arm::tool() const {
   return world_.position(palm_) + world_.rotation(palm_) * jaws_.tool_P();
 }

@@ -77,6 +77,11 @@ void LineRobot::squeeze(double force_n, double speed_m_s, double acceleration_m_
   drive(LineAxis::kFinger).servo.push(closing_sign_ * speed_m_s, acceleration_m_s2);
 }
 
+double LineRobot::squeeze_n() const {
+  const Drive& finger = drive(LineAxis::kFinger);
+  return finger.servo.is_pushing() ? finger.max_force_n : 0.0;
+}
+
 double LineRobot::position_m(LineAxis axis) const {
   return world_.slider_position_m(drive(axis).slider);
 }

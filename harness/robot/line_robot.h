@@ -26,6 +26,11 @@ class LineRobot {
   /// Presses the driven pad towards the other one with `force_n`, until the next move of kFinger.
   void squeeze(double force_n, double speed_m_s, double acceleration_m_s2);
 
+  /// The force of the squeeze that lasts [N]; 0: the fingers were opened, or never closed.
+  double squeeze_n() const;
+  /// What the motion of an axis asks for [m/s2].
+  double asked_acceleration(LineAxis axis) const { return drive(axis).servo.asked_acceleration(); }
+
   double position_m(LineAxis axis) const;
   bool at_rest(LineAxis axis) const { return drive(axis).servo.at_rest(); }
   /// How far `target_m` lies beyond the stops of the axis; 0 within them.

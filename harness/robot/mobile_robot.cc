@@ -45,6 +45,15 @@ void MobileBase::brake() {
   turn_.brake();
 }
 
+AskedAcceleration MobileBase::asked_acceleration(const Eigen::Vector3d& p_W) const {
+  const double radius_m = (p_W - world_.position(body_)).head<2>().norm();
+  const double rate_rad_s = turn_.asked_velocity();
+  const double shaken_rad_s = wave_number_rad_m_ * line_.asked_speed();
+  return {line_.asked_acceleration() +
+              radius_m * (turn_.asked_acceleration() + rate_rad_s * rate_rad_s),
+          amplitude_m_ * shaken_rad_s * shaken_rad_s};
+}
+
 PlanarPose MobileBase::pose() const {
   const Eigen::Matrix3d R = world_.rotation(body_);
   return {world_.position(body_).head<2>(), heading_rad(R)};
@@ -126,6 +135,13 @@ Eigen::Vector3d MobileRobot::carried_to_world(const Eigen::Vector3d& p_B) const 
 
 bool MobileRobot::parked(const Arm& arm) const {
   return (arm.tool() - carry_point(arm)).norm() <= kParkedWithin_m;
+}
+
+AskedAcceleration MobileRobot::asked_acceleration(const Arm& arm) const {
+  AskedAcceleration asked = base_.asked_acceleration(arm.tool());
+  asked.level += arm.asked_acceleration();
+  asked.upright += arm.asked_acceleration() + torso_servo_.asked_acceleration();
+  return asked;
 }
 
 bool MobileRobot::open(const Arm& arm) const {

@@ -25,6 +25,11 @@ struct PlanarPose {
   double yaw_rad = 0.0;
 };
 
+/// Accelerations that motions ask for, level and upright [m/s2].
+struct AskedAcceleration {
+  double level = 0.0, upright = 0.0;
+};
+
 /// A base that drives straight lines and turns on the spot. Its wheels follow the floor's relief,
 /// a sine of the way driven, so that what it carries is shaken by the square of its speed.
 class MobileBase {
@@ -36,6 +41,9 @@ class MobileBase {
   void turn_to(double yaw_rad, const Motion& motion);  // the shorter way
   void brake();
   bool at_rest() const { return line_.at_rest() && turn_.at_rest(); }
+  /// Of a point of the world that the base carries. The relief of the floor shakes it by the square
+  /// of the speed.
+  AskedAcceleration asked_acceleration(const Eigen::Vector3d& p_W) const;
 
   PlanarPose pose() const;
   BodyId body() const { return body_; }
@@ -88,6 +96,8 @@ class MobileRobot {
   /// Is the tool where parking leaves it?
   bool parked(const Arm& arm) const;
   bool open(const Arm& arm) const;
+  /// Of the arm's tool, at most: an arm may move it any way.
+  AskedAcceleration asked_acceleration(const Arm& arm) const;
 
   const MobileRobotSpec& spec() const { return spec_; }
   /// Every part of the robot.

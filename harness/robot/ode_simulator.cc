@@ -103,7 +103,7 @@ struct OdeSimulator::Impl {
   enum class Condition : std::uint8_t { kFresh, kReady, kLost };
 
   explicit Impl(const WorldSpec& world_spec)
-      : spec(checked(world_spec)), owned(make_world(spec)), grasp(spec, world) {
+      : spec(checked(world_spec)), owned(make_world(spec)), grasp(spec, world), grips(spec, world) {
     if (spec.mobile) {
       mobile.emplace(spec, world);
       perception.emplace(world, *mobile);
@@ -119,6 +119,7 @@ struct OdeSimulator::Impl {
   }
   void reset_robot(std::uint64_t seed) {
     grasp.reset();
+    grips.reset();
     if (line) line->reset();
     if (mobile) mobile->reset();
     if (perception) perception->reset(seed);
@@ -126,6 +127,25 @@ struct OdeSimulator::Impl {
   void drive_motors() {
     if (line) line->drive_motors();
     if (mobile) mobile->drive_motors();
+  }
+  /// What the grippers were told for the step that was made.
+  const std::vector<GripDemand>& demands() {
+    demands_made.clear();
+    if (line) {
+      const double level =
+          line->asked_acceleration(LineAxis::kBase) + line->asked_acceleration(LineAxis::kReach);
+      demands_made.push_back({line->squeeze_n(), level, line->asked_acceleration(LineAxis::kLift)});
+    }
+    if (!mobile) return demands_made;
+    for (const Arm& arm : mobile->arms()) {
+      GripDemand& demand = demands_made.emplace_back();
+      demand.squeeze_n = arm.squeeze_n();
+      if (demand.squeeze_n <= 0.0) continue;
+      const AskedAcceleration asked = mobile->asked_acceleration(arm);
+      demand.level_m_s2 = asked.level;
+      demand.upright_m_s2 = asked.upright;
+    }
+    return demands_made;
   }
   void brake_all() {
     if (line) line->brake_all();
@@ -136,6 +156,8 @@ struct OdeSimulator::Impl {
   std::unique_ptr<PhysicsWorld> owned;
   PhysicsWorld& world = *owned;
   GraspMonitor grasp;
+  GripWatch grips;
+  std::vector<GripDemand> demands_made;  // kept to save allocations
   std::optional<LineRobot> line;
   std::optional<MobileRobot> mobile;
   std::optional<Perception> perception;
@@ -153,6 +175,7 @@ std::optional<Gaze> OdeSimulator::gaze() const {
   return impl_->perception ? impl_->perception->line_of_sight() : std::nullopt;
 }
 const StepStatistics& OdeSimulator::statistics() const { return impl_->world.statistics(); }
+const GripWatch& OdeSimulator::grips() const { return impl_->grips; }
 void OdeSimulator::measure_times(bool on) { impl_->world.measure_times(on); }
 
 void OdeSimulator::watch(Watcher watcher, void* context) {
@@ -215,6 +238,7 @@ Outcome OdeSimulator::act(std::string_view action, const State& arguments,
     return {SimStatus::kUnsupported, *message, 0.0, {}};
   }
   impl_->world.enter_thread();
+  impl_->grips.begin_act();
   const ControlContext context{impl_->spec,
                                impl_->world,
                                impl_->grasp,
@@ -228,6 +252,7 @@ Outcome OdeSimulator::act(std::string_view action, const State& arguments,
   double time_s = 0.0;
   for (std::int64_t steps = 1;; ++steps) {
     if (std::optional<Outcome> outcome = controller->tick(time_s)) {
+      impl_->grips.end_act();
       outcome->sim_time_s = time_s;
       outcome->motion = impl_->motion->take();
       return *std::move(outcome);
@@ -241,11 +266,13 @@ Outcome OdeSimulator::act(std::string_view action, const State& arguments,
       return outcome;
     }
     impl_->grasp.update();
+    impl_->grips.update(impl_->demands());
     impl_->motion->step();
     time_s = static_cast<double>(steps) * timestep_s;
     if (impl_->watcher != nullptr) impl_->watcher(impl_->watcher_context, time_s, *this);
   }
   impl_->brake_all();  // takes effect in the next action
+  impl_->grips.end_act();
   Outcome outcome{SimStatus::kTruncated,
                   fmt::format("`{}` took longer than {} s", action, sim_time_limit_s),
                   time_s,

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "harness/engine/physics_world.h"
+#include "harness/robot/grip_watch.h"
 #include "harness/robot/perception.h"
 #include "harness/simulator/simulator.h"
 #include "harness/world/world_spec.h"
@@ -41,6 +42,8 @@ class OdeSimulator final : public Simulator {
   /// Of the camera of a mobile robot that has looked at something.
   std::optional<Gaze> gaze() const;
   const StepStatistics& statistics() const;
+  /// What left the grippers, although they squeezed, and what they hold.
+  const GripWatch& grips() const;
   void measure_times(bool on);
 
  private:

@@ -56,6 +56,23 @@ Eigen::Isometry3d PalmChain::root() const {
   return X_WR;
 }
 
+double PalmChain::asked_acceleration() const {
+  const double asked = along_.asked_acceleration();
+  const double rate = along_.asked_velocity();
+  const Eigen::Vector3d tool = arm_.chain.tool(positions()).translation();
+  switch (mode_) {
+    case Mode::kLine:
+      return asked;
+    case Mode::kTurn:
+      return 0.0;  // on the spot
+    case Mode::kSwing:
+      return tool.norm() * (asked + rate * rate);
+    case Mode::kArc:
+      return (tool - centre_).head<2>().norm() * (asked + rate * rate);
+  }
+  return asked;
+}
+
 double PalmChain::wrist_rad() const {
   const Eigen::Matrix3d R_RP = world_.rotation(arm_.root).transpose() * world_.rotation(arm_.palm);
   return wrapped(heading_rad(R_RP) - start_yaw_rad_);

@@ -40,6 +40,8 @@ class PalmChain {
   void aim_wrist(double yaw_rad);
   void brake();
   bool at_rest() const { return along_.at_rest(); }
+  /// Of the tool against the root, at most [m/s2].
+  double asked_acceleration() const;
   double wrist_rad() const;
   /// How lines leave it.
   double wrist_goal_rad() const { return wrist_goal_rad_; }

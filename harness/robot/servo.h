@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 
 namespace parallax::harness {
@@ -36,6 +37,11 @@ class AxisServo {
 
   /// At rest: the last motion or braking is over.
   bool at_rest() const { return mode_ == Mode::kHold; }
+  bool is_pushing() const { return mode_ == Mode::kPush; }
+  /// How fast its velocity may change; 0 at rest.
+  double asked_acceleration() const { return at_rest() ? 0.0 : motion_.acceleration_m_s2; }
+  /// The last command.
+  double asked_velocity() const { return command_m_s_; }
 
  private:
   enum class Mode : std::uint8_t { kHold, kBrake, kMove, kPush };
@@ -61,6 +67,8 @@ class LineServo {
   void brake() { along_.brake(); }
   Eigen::Vector3d next_velocity(const Eigen::Vector3d& position, double timestep_s);
   bool at_rest() const { return along_.at_rest(); }
+  double asked_acceleration() const { return along_.asked_acceleration(); }
+  double asked_speed() const { return std::abs(along_.asked_velocity()); }
 
  private:
   Eigen::Vector3d start_ = Eigen::Vector3d::Zero();
@@ -83,6 +91,10 @@ class ArcServo {
   /// How far it has turned since the motion began, and how fast it is to turn; by the last command.
   double turned_rad() const { return turned_rad_; }
   double rate_rad_s() const { return rate_rad_s_; }
+  /// Of the point, along the circle and towards its centre together.
+  double asked_acceleration() const {
+    return start_.head<2>().norm() * (along_.asked_acceleration() + rate_rad_s_ * rate_rad_s_);
+  }
 
  private:
   Eigen::Vector3d start_ = Eigen::Vector3d::UnitX();  // from the centre

@@ -99,6 +99,11 @@ struct AnnouncedAct {
 
 using AnnouncedActs = std::function<std::vector<AnnouncedAct>()>;
 
+/// Word that the reason of a loss begins with, where the simulator takes back what it showed
+/// because it was of its solver: with another step, or another engine, it does not happen. The same
+/// start and seed would show it again, so that such a loss is not repeated.
+inline constexpr std::string_view kOfTheSolver = "of the solver";
+
 class RemoteSimulator;
 
 /// One simulated world. One instance per worker process, never shared.

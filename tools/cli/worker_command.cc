@@ -11,7 +11,7 @@
 #include "harness/cluster/program_identity.h"
 #include "harness/config/load_limits.h"
 #include "harness/config/scenario.h"
-#include "harness/robot/ode_simulator.h"
+#include "harness/robot/guarded_simulator.h"
 #include "harness/simulator/worker.h"
 #include "tools/app/simulator_factory.h"
 #include "tools/app/version.h"
@@ -86,7 +86,7 @@ int serve_scenario(const WorkerOptions& options, Invocation& invocation) {
     if (options.engine == to_string(one)) scenario->world.engine = one;
   }
   if (options.half_step) scenario->world.solver.timestep_s /= 2.0;
-  harness::OdeSimulator simulator(scenario->world);
+  harness::GuardedSimulator simulator(scenario->world);
   return harness::serve(simulator, STDIN_FILENO, STDOUT_FILENO) == 0 ? 0 : kPeerGone;
 }
 
