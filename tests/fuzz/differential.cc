@@ -36,6 +36,7 @@ class Comparer {
     result_.brute_force = brute_.has_value();
     result_.clingo = clingo_.has_value();
     if (auto found = compare_traces()) return *found;
+    if (auto found = compare_exclusions()) return *found;
     if (auto found = compare_export()) return *found;
     if (auto found = compare_optimum()) return *found;
     if (auto found = compare_variants()) return *found;
@@ -183,6 +184,37 @@ class Comparer {
     return std::nullopt;
   }
 
+  /// The traces are those of the model without its `mutex` and `xor` statements that satisfy them
+  /// as they were parsed. A completion takes the disjunction of `xor` for a reason; then, each
+  /// trace satisfies them, and no more is known.
+  std::optional<Comparison> compare_exclusions() const {
+    if (base_.exclusions.empty()) return std::nullopt;
+    const auto satisfied = [&](const compiler::Valuation& trace) {
+      return std::all_of(base_.exclusions.begin(), base_.exclusions.end(),
+                         [&](const auto& one) { return satisfies(one, *base_.typed, trace); });
+    };
+    const auto ours = enumerated_traces(*base_.compiled, options_.max_traces + 1);
+    for (const auto& trace : ours.traces) {
+      if (!satisfied(trace)) {
+        return difference("exclusion as stated", "not satisfied in " + trace_key(trace, false));
+      }
+    }
+    const bool is_reason = !base_.typed->completions.empty() &&
+                           std::any_of(base_.exclusions.begin(), base_.exclusions.end(),
+                                       [](const auto& one) { return one.is_xor; });
+    if (is_reason || !ours.complete) return std::nullopt;
+    std::string rest = text_;
+    for (auto one = base_.exclusions.rbegin(); one != base_.exclusions.rend(); ++one) {
+      rest.erase(one->source.begin, one->source.end - one->source.begin);
+    }
+    const FuzzCompilation free(rest, {});
+    if (!free.compiled) return std::nullopt;
+    auto all = enumerated_traces(*free.compiled, 20 * options_.max_traces);
+    if (!all.complete) return std::nullopt;
+    std::erase_if(all.traces, [&](const auto& trace) { return !satisfied(trace); });
+    return same("parallax", observed(ours), "exclusion as stated", observed(all));
+  }
+
   /// With the open atoms named, the export has the traces of `--distinct all`, one for one.
   std::optional<Comparison> compare_export() {
     if (!clingo_ || !compiler::has_user_predicates(*base_.typed)) return std::nullopt;
@@ -311,7 +343,7 @@ Comparison compare_with_old_encoder(const std::string& text, const DifferentialO
   if (!made.compiled) {
     return {Comparison::Kind::kRefused, made.codes(), {}, 0, made.error_lines()};
   }
-  const auto old = old_encoder_traces(*made.typed, options.max_traces + 1);
+  const auto old = old_encoder_traces(*made.typed, made.exclusions, options.max_traces + 1);
   result.code = old.beyond;
   for (const auto& diagnostic : made.sink.sorted()) {
     if (diagnostic.code == codes::kNamedCompletion) {

@@ -20,6 +20,7 @@ struct FuzzOptions {
   bool clingo = false;
   bool compat = false;
   bool effect_constraints = false;
+  bool exclusions = false;
   bool print = false;
   bool no_shrink = false;
 };
@@ -137,8 +138,8 @@ int fuzz(const FuzzOptions& options) {
   for (std::uint64_t i = 0; i < options.count; ++i) {
     const auto seed = options.seed + i;
     const bool large = is_large(options, seed);
-    const auto model =
-        random_model(seed, large ? kSolverSize : kBruteForceSize, options.effect_constraints);
+    const auto model = random_model(seed, large ? kSolverSize : kBruteForceSize,
+                                    options.effect_constraints, options.exclusions);
     if (options.print) {
       fmt::print("{}", model.print());
       continue;
@@ -146,6 +147,11 @@ int fuzz(const FuzzOptions& options) {
     DifferentialOptions comparing;
     comparing.clingo = options.clingo;
     comparing.brute_force = !large;
+    if (options.exclusions) {
+      // The added atoms are too many for all assignments; the statement is the oracle.
+      comparing.brute_force = false;
+      comparing.max_traces = 200;
+    }
     comparing.compat = options.compat;
     fuzz_one(model, comparing, !options.no_shrink, figures);
     if (figures.differ >= options.max_differences) break;
@@ -170,6 +176,8 @@ int run(int argc, char** argv) {
              "Compare --compat decreasoner with a second implementation of its rules");
   table.flag("--effect-constraints", options.effect_constraints,
              "Add effect axioms whose conditions mention effects to every model");
+  table.flag("--exclusions", options.exclusions,
+             "Add events of unequal numbers of arguments and a mutex or xor over them");
   table.flag("--print", options.print, "Print the models instead of comparing");
   table.flag("--no-shrink", options.no_shrink, "Print differing models as they are");
   const auto line = tools::parse_and_print({table, "", false, {}}, argc, argv);

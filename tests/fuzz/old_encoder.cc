@@ -1,6 +1,7 @@
 #include "tests/fuzz/old_encoder.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -23,7 +24,8 @@ using Kind = OldTree::Kind;
 
 class OldEncoder : OldTerms {
  public:
-  explicit OldEncoder(const compiler::TypedModel& model) : OldTerms(model) {
+  OldEncoder(const compiler::TypedModel& model, const std::vector<StatedExclusion>& exclusions)
+      : OldTerms(model), exclusions_(exclusions) {
     for (const auto& time : domain(*model.core.time)) horizon_ = std::max(horizon_, time.number);
     for (std::size_t i = 0; i < model.symbols.size(); ++i) {
       const auto symbol = model.symbols.id_at(i);
@@ -158,7 +160,10 @@ class OldEncoder : OldTerms {
   }
 
   void encode() {
+    for (const auto& exclusion : exclusions_) write_out(exclusion);
     for (const auto& axiom : model_.axioms) {
+      const auto stated = [&](const StatedExclusion& one) { return one.source == axiom.source; };
+      if (std::any_of(exclusions_.begin(), exclusions_.end(), stated)) continue;
       const auto made = assert_tree(tree(axiom.formula));
       if (made && !axiom.mentions_effects) labelled_.emplace_back(axiom.label, *made);
     }
@@ -168,6 +173,87 @@ class OldEncoder : OldTerms {
     for (const auto& axiom : model_.trajectories) assert_trajectory(axiom);
     for (const auto& fluent : fluents_) assert_frame(fluent);
     assert_completions(completions);
+  }
+
+  void state_exclusion(const OldTree& made) {
+    if (auto kept = assert_tree(made)) labelled_.emplace_back("", *std::move(kept));
+  }
+
+  void write_out(const StatedExclusion& exclusion) {
+    for (const auto first : exclusion.names) {
+      for (const auto second : exclusion.names) {
+        if (first == second) continue;
+        state_exclusion(over_arguments({first, second}, true, [](std::vector<OldTree> atoms) {
+          for (auto& atom : atoms) atom = OldTree::of(Kind::kNot, {std::move(atom)});
+          return old_disjunction(std::move(atoms));
+        }));
+      }
+    }
+    if (!exclusion.is_xor || exclusion.names.empty()) return;
+    state_exclusion(over_arguments(exclusion.names, false, [](std::vector<OldTree> atoms) {
+      return atoms.size() == 1 ? atoms.front() : old_disjunction(std::move(atoms));
+    }));
+  }
+
+  /// The names of the variables of a symbol's arguments. Pairs number every one; in the disjunction
+  /// of `xor` a sort that the symbol has once is not numbered.
+  std::vector<std::string> variable_names(compiler::SymbolId symbol, bool numbers) const {
+    const auto& sorts = model_.symbols[symbol].arguments;
+    std::map<std::uint32_t, int> seen;
+    std::vector<std::string> names;
+    for (const auto sort : sorts) {
+      const int number = ++seen[sort.index()];
+      const bool once = std::count(sorts.begin(), sorts.end(), sort) == 1;
+      names.push_back(model_.sorts[sort].name + (once && !numbers ? "" : std::to_string(number)));
+    }
+    return names;
+  }
+
+  /// For all values of the variables, and timepoints unless the names are predicates.
+  template <typename Combine>
+  OldTree over_arguments(const std::vector<compiler::SymbolId>& symbols, bool numbers,
+                         const Combine& combine) {
+    std::map<std::string, compiler::SortId> variables;
+    bool timed = false;
+    for (const auto symbol : symbols) {
+      const auto names = variable_names(symbol, numbers);
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        variables.emplace(names[i], model_.symbols[symbol].arguments[i]);
+      }
+      timed = timed || model_.symbols[symbol].kind != SymbolKind::kPredicate;
+    }
+    std::vector<std::map<std::string, OldValue>> choices = {{}};
+    for (const auto& [name, sort] : variables) {
+      std::vector<std::map<std::string, OldValue>> longer;
+      for (const auto& choice : choices) {
+        for (const auto& value : domain(sort)) {
+          longer.push_back(choice);
+          longer.back().emplace(name, value);
+        }
+      }
+      choices = std::move(longer);
+    }
+    std::vector<OldTree> all;
+    for (std::int64_t t = 0; t <= (timed ? horizon_ : 0); ++t) {
+      for (const auto& choice : choices) {
+        std::vector<OldTree> atoms;
+        for (const auto symbol : symbols) {
+          std::vector<OldValue> arguments;
+          for (const auto& name : variable_names(symbol, numbers)) {
+            arguments.push_back(choice.at(name));
+          }
+          const auto made = applied(symbol, arguments);
+          const auto kind = model_.symbols[symbol].kind;
+          atoms.push_back(kind == SymbolKind::kEvent ? happens(made, t)
+                          : kind == SymbolKind::kFluent
+                              ? state('h', made.text, made.fits, t)
+                              : OldTree::atom_of(predicate_atom(made.text)));
+        }
+        all.push_back(combine(std::move(atoms)));
+      }
+    }
+    if (variables.empty() && !timed) return all.front();
+    return quantified(true, std::move(all));
   }
 
   bool is_noninertial(const std::string& fluent) const {
@@ -386,6 +472,7 @@ class OldEncoder : OldTerms {
     }
   }
 
+  const std::vector<StatedExclusion>& exclusions_;
   std::int64_t horizon_ = 0;
   std::vector<Fluent> fluents_;
   std::vector<OldTree> formulas_;  // simplified
@@ -394,8 +481,9 @@ class OldEncoder : OldTerms {
 
 }  // namespace
 
-OldAnswer old_encoder_traces(const compiler::TypedModel& model, std::size_t limit) {
-  return OldEncoder(model).run(limit);
+OldAnswer old_encoder_traces(const compiler::TypedModel& model,
+                             const std::vector<StatedExclusion>& exclusions, std::size_t limit) {
+  return OldEncoder(model, exclusions).run(limit);
 }
 
 }  // namespace parallax::test

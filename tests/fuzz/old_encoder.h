@@ -22,6 +22,10 @@ struct OldAnswer {
 /// nothing with the grounder but the checked model. Where that program stops with an error although
 /// its rules have an answer (a negated equivalence, a trajectory without events that begin and end
 /// it), the rules are followed.
-OldAnswer old_encoder_traces(const compiler::TypedModel& model, std::size_t limit);
+///
+/// `mutex` and `xor` are written out from the statements, not from the axioms that the checker
+/// makes of them: an argument's variable is its sort, numbered from 1 for each name.
+OldAnswer old_encoder_traces(const compiler::TypedModel& model,
+                             const std::vector<StatedExclusion>& exclusions, std::size_t limit);
 
 }  // namespace parallax::test

@@ -26,6 +26,7 @@ FuzzCompilation::FuzzCompilation(const std::string& text, const compiler::Ground
   auto checked = compiler::check_model(*ast, files, sink, check);
   if (!checked) return;
   typed = std::make_unique<compiler::TypedModel>(*std::move(checked));
+  exclusions = stated_exclusions(*ast, *typed);
   std::optional<compiler::CheckedObjective> wanted;
   if (!objective.empty()) {
     const auto place = files.add("objective", objective);

@@ -13,6 +13,7 @@
 #include "compiler/base/diagnostic.h"
 #include "compiler/ground/grounder.h"
 #include "compiler/reference/reference_evaluator.h"
+#include "tests/fuzz/stated_exclusion.h"
 
 namespace parallax::test {
 
@@ -30,6 +31,7 @@ struct FuzzCompilation {
   base::SourceFiles files;
   base::DiagnosticSink sink;
   std::unique_ptr<compiler::TypedModel> typed;
+  std::vector<StatedExclusion> exclusions;  // of the parsed text
   std::optional<compiler::CompiledModel> compiled;
 
   /// With an objective, as `--minimize` has it, unless that is empty.

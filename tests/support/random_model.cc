@@ -35,6 +35,32 @@ class ModelMaker {
     return std::move(statements_);
   }
 
+  /// To be called after the rest. Two or three names with none to two arguments of one sort, not
+  /// all with the same number.
+  std::vector<RandomStatement> make_exclusion() {
+    statements_.clear();
+    std::vector<std::string> sorts;
+    for (const auto& sort : schema_.plain) {
+      if (schema_.elements.at(sort).size() <= 2) sorts.push_back(sort);
+    }
+    if (sorts.empty()) return {};
+    const auto& sort = random_.pick(sorts);
+    const bool events = random_.chance(70);
+    std::vector<std::size_t> counts = {1 + random_.below(2), random_.below(3)};
+    if (counts[0] == counts[1]) counts[1] = 3 - counts[0];
+    if (random_.chance(30)) counts.push_back(random_.below(2));
+    std::string names;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      const auto name = "X" + std::to_string(i);
+      std::string arguments;
+      for (std::size_t k = 0; k < counts[i]; ++k) arguments += (k > 0 ? "," : "") + sort;
+      declare((events ? "event " : "fluent ") + name + "(" + arguments + ")");
+      names += (i > 0 ? ", " : "") + name;
+    }
+    declare((random_.chance(70) ? "mutex " : "xor ") + names);
+    return std::move(statements_);
+  }
+
  private:
   void declare(std::string text) { statements_.push_back({std::move(text), {}, {}}); }
 
@@ -320,7 +346,8 @@ std::string RandomModel::print() const {
   return text;
 }
 
-RandomModel random_model(std::uint64_t seed, const ModelSize& size, bool effect_constraints) {
+RandomModel random_model(std::uint64_t seed, const ModelSize& size, bool effect_constraints,
+                         bool exclusions) {
   FuzzRandom random(seed);
   const bool large = size.most > kBruteForceSize.most;
   RandomModel model;
@@ -333,6 +360,11 @@ RandomModel random_model(std::uint64_t seed, const ModelSize& size, bool effect_
     model.statements = maker.make();
     if (effect_constraints) {
       for (auto& statement : maker.make_effect_constraints()) {
+        model.statements.push_back(std::move(statement));
+      }
+    }
+    if (exclusions) {
+      for (auto& statement : maker.make_exclusion()) {
         model.statements.push_back(std::move(statement));
       }
     }

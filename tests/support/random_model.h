@@ -62,8 +62,9 @@ inline constexpr ModelSize kSolverSize{20, 60};
 /// trajectories, definitions over effects, mutex and xor. Well-sorted by construction; it may
 /// still be refused because a formula is false or says nothing. The same seed gives the same model;
 /// with `effect_constraints` effect axioms whose conditions mention effects are added to it, which
-/// may be refused because an effect depends on its own absence.
-RandomModel random_model(std::uint64_t seed, const ModelSize& size,
-                         bool effect_constraints = false);
+/// may be refused because an effect depends on its own absence. With `exclusions` a statement of
+/// mutex or xor is added, over new events or fluents of unequal numbers of arguments of one sort.
+RandomModel random_model(std::uint64_t seed, const ModelSize& size, bool effect_constraints = false,
+                         bool exclusions = false);
 
 }  // namespace parallax::test
