@@ -144,7 +144,7 @@ TEST_CASE(
 
 TEST_CASE("check of a scenario lints its model as check of the model does") {
   const CliFixture cli;
-  cli.write("domain.e", cli.read("domain.e") + "fluent Lit()\n");
+  cli.write("domain.e", cli.read("domain.e") + "fluent Lit()\n!HoldsAt(Lit(),0).\n");
   cli.replace("common.yaml", "Holding(): {flag", "Lit(): ignored\n  Holding(): {flag");
   const auto said = check(cli, 0);
   const auto model = cli.parallax({"check", "domain.e", "start.e", "--horizon", "6"});
