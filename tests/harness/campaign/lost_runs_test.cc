@@ -1,6 +1,8 @@
 // Lost runs of simulators that cannot promise the same run for the same start and seed.
 
+#include <algorithm>
 #include <random>
+#include <string>
 
 #include "tests/harness/campaign/two_regions.h"
 
@@ -29,6 +31,33 @@ TEST_CASE("the first loss counts where a repetition would be another draw") {
   CHECK(trace.retried == 0);
   CHECK(resets == trace.simulations + 2);  // two repetitions of the first clean one
   CHECK(slurp(bench.journal()).find("\"retries\":1") == std::string::npos);
+}
+
+TEST_CASE("what the simulator took back is lost at once, and no discrepancy") {
+  Bench bench;
+  const auto start = drawn_start(bench, 1, 5);
+  bench.script.loss = std::string(kOfTheSolver) + ": `box` left a grip";
+  bench.script.loses = [&](const State& s) { return s == start; };
+  std::atomic<int> resets = 0;
+  bench.script.resets = &resets;
+  const auto result = bench.run();
+  REQUIRE(result.has_value());
+  CHECK(result->discrepancies.empty());
+  const auto& trace = result->traces[0];
+  CHECK(trace.lost == 1);
+  CHECK(trace.of_the_solver == 1);
+  CHECK(trace.retried == 0);
+  CHECK(resets == trace.simulations + 2);  // two repetitions of the first clean one
+  const bool told = std::any_of(trace.caveats.begin(), trace.caveats.end(), [](const auto& text) {
+    return text.find("not counted as a discrepancy but as lost") != std::string::npos &&
+           text.find("`box` left a grip") != std::string::npos;
+  });
+  CHECK(told);
+  const auto recorded = slurp(bench.journal());
+  CHECK(recorded.find("of the solver: `box` left a grip") != std::string::npos);
+  bench.options.resume = true;
+  REQUIRE(bench.run().has_value());
+  CHECK(slurp(bench.journal()) == recorded);
 }
 
 TEST_CASE("neither is a loss repeated when a discrepancy is simulated once more") {

@@ -97,6 +97,7 @@ struct Script {
   static bool never(const State&) { return false; }
   OfStart drops = never;                    // the box stays where it was
   OfStart invalid = never;                  // the start interpenetrates
+  std::string loss = "numbers blew up";     // why
   OfStart loses = never;                    // the simulator is lost in the second action
   OfStart wobbles = never;                  // the robot passes through r1 before it picks up
   std::chrono::milliseconds drop_delay{0};  // runs that drop the box take so much longer
@@ -155,8 +156,7 @@ class ScriptedSimulator final : public Simulator {
     script_.on_act();
     ++acts_;
     if (action == script_.refuses) return {SimStatus::kUnsupported, "no such action", 0.0, {}};
-    if (acts_ == 2 && script_.loses(initial_))
-      return {SimStatus::kLost, "numbers blew up", 0.0, {}};
+    if (acts_ == 2 && script_.loses(initial_)) return {SimStatus::kLost, script_.loss, 0.0, {}};
     const bool drops = script_.drops(initial_);
     if (drops && acts_ == 1) std::this_thread::sleep_for(script_.drop_delay);
     if (action == "going") robot_m_ = number(arguments, "target.x");
