@@ -116,14 +116,12 @@ BodyShape read_shape(const YamlNode& node, std::string what, base::DiagnosticSin
                Key::kYawRad, Key::kPitchRad, Key::kRollRad});
   read_form(fields, shape);
   const Eigen::Vector3d middle = shape.p_BS;
+  shape.p_BS = Eigen::Vector3d::Zero();
   read_vector(fields, Key::kAtM, shape.p_BS);
   fields.angle(Key::kYawRad, shape.yaw_rad);
   fields.angle(Key::kPitchRad, shape.pitch_rad);
   fields.angle(Key::kRollRad, shape.roll_rad);
-  if (shape.form == ShapeForm::kHull) {
-    if (fields.find(Key::kAtM) == nullptr) shape.p_BS = Eigen::Vector3d::Zero();
-    shape.p_BS += shape_rotation(shape) * middle;
-  }
+  if (shape.form == ShapeForm::kHull) shape.p_BS += shape_rotation(shape) * middle;
   return shape;
 }
 
@@ -212,11 +210,12 @@ GraspSpec read_grasp(const YamlNode& node, std::string what, base::DiagnosticSin
       {Key::kAtM, Key::kFrame, Key::kWristRad, Key::kApproach, Key::kWidthM, Key::kEffortN});
   fields.require(Key::kWidthM);
   read_vector(fields, Key::kAtM, grasp.p_BG);
-  if (const auto frame = fields.choice(Key::kFrame, "frame of a grasp", kFrames)) {
+  if (const auto frame =
+          fields.choice(Key::kFrame, "frame of a grasp", kFrames, grasp.follows_body ? 1 : 0)) {
     grasp.follows_body = *frame == 1;
   }
   grasp.from_above =
-      fields.choice(Key::kApproach, "approach of a grasp", kApproaches) == std::size_t{1};
+      fields.choice(Key::kApproach, "approach of a grasp", kApproaches, 0) == std::size_t{1};
   fields.angle(Key::kWristRad, grasp.wrist_rad);
   fields.number(Key::kWidthM, kPositive, grasp.width_m);
   fields.number(Key::kEffortN, kPositive, grasp.effort_n);
@@ -241,6 +240,7 @@ LineRobotSpec read_line_robot(YamlFields& fields) {
 }
 
 void read_pair(const YamlFields& fields, std::string_view key, double& low, double& high) {
+  ReadLog::fallback(fields.node(), key, std::array{low, high});
   if (const auto values = fields.numbers(key, 2)) {
     low = (*values)[0];
     high = (*values)[1];
@@ -250,6 +250,7 @@ void read_pair(const YamlFields& fields, std::string_view key, double& low, doub
 DetectionSpec read_detection(const YamlNode& node, base::DiagnosticSink& sink) {
   DetectionSpec detection;
   YamlFields fields(node, key_text(Key::kDetection), sink);
+  fields.may_be_absent();
   fields.only({Key::kBiasM, Key::kBiasRad, Key::kNoiseM, Key::kNoiseRad, Key::kMissRate,
                Key::kConfusionRate});
   fields.number(Key::kBiasM, kDetectionError, detection.bias_m);
@@ -354,6 +355,7 @@ MobileRobotSpec read_mobile_robot(YamlFields& fields, const YamlNode& arms,
 }  // namespace
 
 void read_vector(const YamlFields& fields, std::string_view key, Eigen::Vector3d& out) {
+  ReadLog::fallback(fields.node(), key, std::array{out.x(), out.y(), out.z()});
   if (const auto values = fields.numbers(key, 3)) {
     out = Eigen::Vector3d((*values)[0], (*values)[1], (*values)[2]);
   }

@@ -51,8 +51,11 @@ void read_rate_bounds(const YamlFields& fields, RateExpectation& rate) {
                "given by one of `below`, `above` and `between`");
     return;
   }
-  fields.number(Key::kBelow, kOpenUnit, rate.upper);
-  fields.number(Key::kAbove, kOpenUnit, rate.lower);
+  std::optional<double> upper, lower;
+  fields.number(Key::kBelow, kOpenUnit, upper);
+  fields.number(Key::kAbove, kOpenUnit, lower);
+  rate.upper = upper.value_or(rate.upper);
+  rate.lower = lower.value_or(rate.lower);
   if (below != nullptr || above != nullptr) return;
   if (fields.require(Key::kBetween) == nullptr) return;
   const auto bounds = fields.numbers(Key::kBetween, 2);
@@ -102,9 +105,13 @@ RateExpectation read_rate(const YamlNode& node, base::DiagnosticSink& sink) {
   fields.only({Key::kBelow, Key::kAbove, Key::kBetween, Key::kConfidence, Key::kTrace, Key::kRuns,
                Key::kMaxRuns, Key::kCause});
   fields.integer(Key::kTrace, 1, kMaxRuns, rate.trace);
-  fields.integer(Key::kRuns, 1, kMaxRuns, rate.runs);
+  // Without either, what is to be shown says how many.
+  std::optional<std::int64_t> runs;
+  fields.integer(Key::kRuns, 1, kMaxRuns, runs);
+  rate.runs = runs.value_or(rate.runs);
   if (const auto* most = fields.find(Key::kMaxRuns)) {
-    fields.integer(Key::kMaxRuns, 1, kMaxRuns, rate.runs);
+    fields.integer(Key::kMaxRuns, 1, kMaxRuns, runs);
+    rate.runs = runs.value_or(rate.runs);
     rate.fixed_runs = false;
     rate.confidence = kDefaultEvidence;
     if (fields.find(Key::kRuns) != nullptr) {

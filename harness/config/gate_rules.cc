@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <initializer_list>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "compiler/base/codes/scenarios.h"
 #include "compiler/base/path_gate.h"
+#include "harness/config/scenario_settings.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {
@@ -28,9 +31,9 @@ class RuleSection {
  public:
   /// `more`: its keys that are no such rules.
   RuleSection(const YamlNode& node, std::string_view key, std::initializer_list<Rule> rules,
-              std::initializer_list<std::string_view> more, base::DiagnosticSink& sink)
+              std::vector<std::string_view> more, base::DiagnosticSink& sink)
       : key_(key), fields_(node, key_text(key), sink), sink_(sink), before_(sink.error_count()) {
-    std::vector<std::string_view> known(more);
+    auto known = std::move(more);
     for (const auto& rule : rules) known.push_back(rule.key);
     fields_.only(std::span<const std::string_view>(known));
     for (const auto& rule : rules) read(rule);
@@ -60,14 +63,59 @@ class RuleSection {
   bool forbids_ = false;
 };
 
+/// Rules with an order, by section: the word, and what it demands.
+struct OrderedRule {
+  std::string_view section, word;
+  GateRules::Demand demand;
+};
+constexpr std::array<OrderedRule, 3> kOrderedRules = {
+    {{Key::kHorizon, "not-shorter", GateRules::Demand::kNotShorter},
+     {Key::kRegions, "not-wider", GateRules::Demand::kNotWider},
+     {Key::kCriterion, "not-weaker", GateRules::Demand::kNotWeaker}}};
+
+/// Names of rules about settings: all of them, those with one effect, those of one section. The
+/// section `starts` belongs to the effect of this name.
+std::vector<std::string_view> setting_rules() {
+  std::vector<std::string_view> out = {Key::kSettings};
+  for (const auto effect :
+       {Effect::kStarts, Effect::kPhysics, Effect::kJudgement, Effect::kClaim}) {
+    out.push_back(to_string(effect));
+  }
+  for (const auto key : kScenarioKeys) {
+    const bool is_setting = key != Key::kInclude && key != Key::kName && key != Key::kModel &&
+                            key != Key::kPlan && key != Key::kBind && key != Key::kConstraints;
+    if (is_setting && std::find(out.begin(), out.end(), key) == out.end()) out.push_back(key);
+  }
+  return out;
+}
+
+void read_setting_rules(const YamlFields& fields, std::vector<GateRules::SettingRule>& out) {
+  for (const auto name : setting_rules()) {
+    std::vector<std::string_view> words(kPermissions.begin(), kPermissions.end());
+    auto demand = GateRules::Demand::kForbidden;
+    for (const auto& ordered : kOrderedRules) {
+      if (ordered.section != name) continue;
+      words.push_back(ordered.word);
+      demand = ordered.demand;
+    }
+    const auto choice = fields.choice(name, fmt::format("value of `{}`", name), words);
+    if (choice == std::size_t{1}) out.push_back({std::string(name), {}});
+    if (choice == std::size_t{2}) out.push_back({std::string(name), demand});
+  }
+}
+
 GateRules::Models read_models(const YamlNode& node, base::DiagnosticSink& sink) {
   GateRules::Models out;
+  auto more = setting_rules();
+  more.push_back(Key::kProperties);
   RuleSection section(node, Key::kModels,
                       {{Key::kLostTraces, &out.lost_traces},
                        {Key::kGainedTraces, &out.gained_traces},
                        {Key::kDeclarations, &out.declarations},
                        {Key::kAxioms, &out.axioms}},
-                      {Key::kProperties}, sink);
+                      std::move(more), sink);
+  read_setting_rules(section.fields(), out.settings);
+  if (!out.settings.empty()) section.forbids();
   if (const auto* list = section.fields().find(Key::kProperties)) {
     out.properties = located_texts(*list, Key::kProperties, sink);
     if (!out.properties.empty()) section.forbids();

@@ -12,10 +12,18 @@ namespace parallax::harness {
 /// What a newer revision must not do to an older one. Without a section nothing is said of such
 /// revisions; what a section does not forbid is allowed.
 struct GateRules {
+  /// A rule about what a scenario says beside model and plan. The ordered ones admit a change to
+  /// the one side: a longer horizon, narrower regions, a criterion that asks for more.
+  enum class Demand : std::uint8_t { kForbidden, kNotShorter, kNotWider, kNotWeaker };
+  struct SettingRule {
+    std::string name;  // "settings" (all but words), an effect ("physics") or a section ("world")
+    Demand demand = Demand::kForbidden;
+  };
   struct Models {
     bool lost_traces = false, gained_traces = false;  // forbidden
     bool declarations = false, axioms = false;        // forbidden to change
     std::vector<LocatedText> properties;              // that must not be lost
+    std::vector<SettingRule> settings;
   };
   struct Plans {
     bool forms = false, order = false;

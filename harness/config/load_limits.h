@@ -7,12 +7,16 @@
 
 namespace parallax::harness {
 
-/// Limits on reading a scenario.
+struct ScenarioSettings;
+
+/// Limits on reading a scenario, and what to tell besides.
 struct LoadLimits {
   bool allow_outside = false;  // as in the load_scenario of scenario.h
   /// Ends the processes that read meshes and worlds of other formats when it is raised; what they
   /// were reading is then reported as not to be read.
   const std::atomic<bool>* stop = nullptr;
+  /// Where to list the values of the scenario, for comparing it with another; null: nowhere.
+  ScenarioSettings* settings = nullptr;
 };
 
 base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,

@@ -131,7 +131,7 @@ RegionSection read_section(YamlFields& fields, std::string name, const WorldSpec
   RegionSection section;
   section.name = std::move(name);
   section.gaps_allowed =
-      fields.choice(Key::kGaps, "value of " + key_text(Key::kGaps), kGaps) == std::size_t{1};
+      fields.choice(Key::kGaps, "value of " + key_text(Key::kGaps), kGaps, 0) == std::size_t{1};
   fields.texts(Key::kFor, section.functions);
   const auto* cells = fields.require(Key::kCells);
   if (cells == nullptr) return section;
@@ -188,7 +188,7 @@ FlagBinding read_flag(YamlFields& fields, const SymbolPattern& pattern) {
   FlagBinding binding;
   binding.variable = read_pattern_text(fields, Key::kFlag, pattern);
   fields.boolean(Key::kAtStart, binding.at_start);
-  if (fields.find(Key::kDrawn) != nullptr) fields.boolean(Key::kDrawn, binding.drawn.emplace());
+  fields.boolean(Key::kDrawn, binding.drawn);
   return binding;
 }
 
@@ -239,7 +239,9 @@ BorderBinding read_border(YamlFields& fields, const SymbolPattern& pattern) {
   }
   if (above == nullptr && up_to == nullptr) fields.require(Key::kAbove);
   binding.above = above != nullptr;
-  fields.number(binding.above ? Key::kAbove : Key::kUpTo, kAnyNumber, binding.border);
+  std::optional<double> border;
+  fields.number(binding.above ? Key::kAbove : Key::kUpTo, kAnyNumber, border);
+  binding.border = border.value_or(binding.border);
   fields.texts(Key::kOnly, binding.only);
   return binding;
 }
@@ -256,6 +258,7 @@ std::optional<FluentBinding> read_binding(const YamlEntry& entry, base::Diagnost
   binding.source = entry.key_range;
   const auto& value = entry.value;
   if (value.is_scalar() && value.text == "ignored") {
+    ReadLog::text(value);
     binding.condition = IgnoredBinding{};
     return binding;
   }

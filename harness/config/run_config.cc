@@ -25,7 +25,8 @@ constexpr std::array<std::string_view, 2> kIntervals = {"mean", "prediction"};
 template <typename Enum, std::size_t Count>
 bool read_enum(const YamlFields& fields, std::string_view key,
                const std::array<std::string_view, Count>& words, Enum& out) {
-  const auto choice = fields.choice(key, fmt::format("value of `{}`", key), words);
+  const auto choice =
+      fields.choice(key, fmt::format("value of `{}`", key), words, static_cast<std::size_t>(out));
   if (choice) out = static_cast<Enum>(*choice);
   return choice.has_value();
 }
@@ -51,9 +52,11 @@ void read_paper_rule(const YamlFields& fields, PaperRuleSpec& rule) {
 }  // namespace
 
 std::optional<Comparison> read_comparison(const YamlFields& fields) {
-  auto comparison = Comparison::kEveryStep;
-  if (!read_enum(fields, Key::kCompare, kComparisons, comparison)) return std::nullopt;
-  return comparison;
+  // Without it other keys say how it is compared, so it has no default of its own.
+  const auto choice =
+      fields.choice(Key::kCompare, "value of " + key_text(Key::kCompare), kComparisons);
+  if (!choice) return std::nullopt;
+  return static_cast<Comparison>(*choice);
 }
 
 std::vector<StartWeight> read_start_weights(const YamlNode& node, base::DiagnosticSink& sink) {
@@ -84,17 +87,14 @@ std::vector<StartWeight> read_start_weights(const YamlNode& node, base::Diagnost
 SearchSpec read_search(const YamlNode& node, base::DiagnosticSink& sink) {
   SearchSpec search;
   // A number alone stands for so many runs of the default strategy.
-  YamlNode map = node;
-  if (node.is_scalar()) {
-    map = YamlNode{YamlNode::Kind::kMap, node.range, {}, false, {}, {}};
-    map.entries.push_back({std::string(Key::kRuns), node.range, node});
-  }
+  const YamlNode map = with_key(node, Key::kRuns);
   YamlFields fields(map, key_text(Key::kSearch), sink);
   fields.only({Key::kRuns, Key::kStrategy});
   if (fields.require(Key::kRuns) == nullptr) return search;
   fields.integer(Key::kRuns, 0, kMaxSearchRuns, search.runs);
   const auto choice =
       fields.choice(Key::kStrategy, "value of " + key_text(Key::kStrategy), strategy_names());
+  ReadLog::fallback(map, Key::kStrategy, std::string(to_string(search.strategy)));
   if (choice) search.strategy = *strategy_kind(strategy_names()[*choice]);
   return search;
 }
@@ -103,13 +103,11 @@ CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink) {
   CriterionSpec criterion;
   criterion.paper = paper_literal();
   // A word alone stands for a criterion with its defaults.
-  YamlNode map = node;
-  if (node.is_scalar()) {
-    map = YamlNode{YamlNode::Kind::kMap, node.range, {}, false, {}, {}};
-    map.entries.push_back({std::string(Key::kKind), node.range, node});
-  }
+  const YamlNode map = with_key(node, Key::kKind);
   YamlFields fields(map, key_text(Key::kCriterion), sink);
-  if (const auto kind = fields.choice(Key::kKind, Key::kCriterion, kKinds)) {
+  fields.may_be_absent();
+  if (const auto kind = fields.choice(Key::kKind, Key::kCriterion, kKinds,
+                                      static_cast<std::size_t>(criterion.kind))) {
     const bool reading = *kind >= kCriterionWords.size();
     criterion.kind = reading ? CriterionKind::kPaper : static_cast<CriterionKind>(*kind);
     if (kKinds[*kind] == "paper-repaired") criterion.paper = paper_repaired();
@@ -166,6 +164,8 @@ SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink) {
   SimulatorSpec simulator;
   simulator.source = node.range;
   if (node.is_scalar()) {
+    ReadLog::stands_for(node, Key::kEngine);
+    ReadLog::fallback(node, Key::kEngine, std::string(to_string(simulator.engine)));
     read_engine(node, Key::kSimulator, "known, besides `command: [...]` and `model: FILE`",
                 simulator, sink);
     return simulator;
@@ -177,11 +177,13 @@ SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink) {
     return simulator;
   }
   if (const auto* engine = fields.find(Key::kEngine)) {
+    ReadLog::fallback(node, Key::kEngine, std::string(to_string(simulator.engine)));
     fields.only({Key::kEngine, Key::kHelloTimeoutS, Key::kResetTimeoutS, Key::kActTimeoutS,
                  Key::kObserveTimeoutS, Key::kCloseTimeoutS, Key::kMinRealTimeFactor,
                  Key::kRecycleAfter, Key::kMemoryMb});
-    std::string name;
+    std::optional<std::string> name;
     fields.text(Key::kEngine, name);  // reports what is no text
+    fields.may_be_absent();
     if (engine->is_scalar()) read_engine(*engine, Key::kEngine, "known", simulator, sink);
     read_process_limits(fields, simulator);
     return simulator;
@@ -202,6 +204,7 @@ SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink) {
 Limits read_limits(const YamlNode& node, base::DiagnosticSink& sink) {
   Limits limits;
   YamlFields fields(node, key_text(Key::kLimits), sink);
+  fields.may_be_absent();
   fields.only({Key::kMaxRuns, Key::kMaxTraces, Key::kMaxRejectedStarts, Key::kMaxLostInARow,
                Key::kMaxPerforms, Key::kMaxSimulatedS});
   fields.integer(Key::kMaxRuns, 0, kMaxRuns, limits.max_runs);

@@ -72,10 +72,12 @@ void read_sampled_variable(const YamlEntry& entry, Scenario& scenario, base::Dia
 
 void read_sampling(const YamlNode& node, Scenario& scenario, base::DiagnosticSink& sink) {
   YamlFields fields(node, key_text(Key::kSampling), sink);
+  fields.may_be_absent();
   fields.only({Key::kInsetM, Key::kVariables, Key::kParameters, Key::kAreas, Key::kRequire});
   fields.number(Key::kInsetM, kNotNegative, scenario.sampling_inset_m);
   if (const auto* variables = fields.find(Key::kVariables)) {
     const YamlFields all(*variables, key_text(Key::kVariables), sink);
+    all.may_be_absent();
     for (const auto& entry : variables->entries) read_sampled_variable(entry, scenario, sink);
   }
   if (const auto* parameters = fields.find(Key::kParameters)) {

@@ -12,6 +12,7 @@
 #include "compiler/base/file_io.h"
 #include "harness/config/load_limits.h"
 #include "harness/config/sections.h"
+#include "harness/config/settings_reader.h"
 #include "harness/engine/world_check.h"
 #include "harness/region/area.h"
 #include "harness/world/world_layout.h"
@@ -125,14 +126,15 @@ class ScenarioReader {
   void read(Scenario& scenario) {
     fields_.belongs(Key::kWorld, kWorldKeys);
     fields_.only(kScenarioKeys);
-    if (const auto* node = fields_.find(Key::kExecution)) {
-      const auto choice =
-          fields_.choice(Key::kExecution, "value of " + key_text(Key::kExecution), kExecutions);
+    const auto* execution = fields_.find(Key::kExecution);
+    if (execution != nullptr) {
+      const auto choice = fields_.choice(Key::kExecution, "value of " + key_text(Key::kExecution),
+                                         kExecutions, static_cast<std::size_t>(scenario.execution));
       if (choice) scenario.execution = static_cast<Execution>(*choice);
-      scenario.execution_source = node->range;
+      scenario.execution_source = execution->range;
     }
-    const auto starts =
-        fields_.choice(Key::kStarts, "value of " + key_text(Key::kStarts), kStartsWords);
+    const auto starts = fields_.choice(Key::kStarts, "value of " + key_text(Key::kStarts),
+                                       kStartsWords, static_cast<std::size_t>(scenario.starts));
     if (starts) scenario.starts = static_cast<Starts>(*starts);
     fields_.boolean(Key::kUntilCovered, scenario.until_covered);
     if (const auto* node = fields_.find(Key::kStartWeights)) {
@@ -140,7 +142,7 @@ class ScenarioReader {
       scenario.start_weights_source = node->range;
     }
     static constexpr std::array<std::string_view, 2> kMatches = {"model", "trace"};
-    if (fields_.choice(Key::kMatch, "value of " + key_text(Key::kMatch), kMatches) ==
+    if (fields_.choice(Key::kMatch, "value of " + key_text(Key::kMatch), kMatches, 0) ==
         std::size_t{1}) {
       scenario.match_model = false;
     }
@@ -155,6 +157,8 @@ class ScenarioReader {
     } else {
       scenario.criterion.paper = paper_literal();
     }
+    ReadLog::fallback(fields_.node(), Key::kCompare,
+                      std::string(to_string(comparison_by(scenario.criterion))));
     if (const auto* node = fields_.find(Key::kLimits)) scenario.limits = read_limits(*node, sink_);
     // An empty one takes back what an included file expects.
     if (const auto* node = fields_.find(Key::kExpect);
@@ -189,6 +193,7 @@ class ScenarioReader {
     if (const auto* node = fields_.find(Key::kEvents)) {
       YamlFields events(*node, key_text(Key::kEvents), sink_);
       events.only({Key::kUnobserved});
+      events.may_be_absent();
       events.texts(Key::kUnobserved, scenario.unobserved);
     }
     if (const auto* node = fields_.require(Key::kHorizon)) {
@@ -335,7 +340,7 @@ std::vector<LocatedText> located_texts(const YamlNode& node, std::string_view ke
 
 base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,
                                      base::DiagnosticSink& sink, bool allow_outside) {
-  return load_scenario(path, files, sink, LoadLimits{allow_outside, nullptr});
+  return load_scenario(path, files, sink, LoadLimits{allow_outside, nullptr, nullptr});
 }
 
 base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,
@@ -353,7 +358,10 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
       !add_meshes(*root, gate, files, sink, limits.stop)) {
     return sink.already_reported();
   }
+  ReadLog log;
+  if (limits.settings != nullptr) log.attach(*root);
   ScenarioReader(*root, gate, files, sink).read(scenario);
+  if (limits.settings != nullptr) *limits.settings = settings_of(*root, log, files);
   for (const auto& model : scenario.models) files.note_input(model.text);
   for (const auto& model : scenario.simulator.models) files.note_input(model.text);
   for (const auto& plan : scenario.plan) note_plan(plan.text, files);

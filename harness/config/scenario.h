@@ -118,6 +118,12 @@ struct Expectation {
   }
 };
 
+/// How states are compared where `compare` does not say: the paper's rule is about last states,
+/// every other claim about every step.
+constexpr Comparison comparison_by(const CriterionSpec& criterion) {
+  return criterion.kind == CriterionKind::kPaper ? Comparison::kFinal : Comparison::kEveryStep;
+}
+
 /// A scenario file as checked data. Paths are resolved against the file's folder.
 struct Scenario {
   std::filesystem::path file;
@@ -162,11 +168,7 @@ struct Scenario {
   bool until_covered = false;
   SearchSpec search;                  // before the runs that anything is claimed from
   std::optional<Comparison> compare;  // none: by the criterion
-  /// The paper's rule is about last states; every other claim about every step.
-  Comparison comparison() const {
-    const bool paper = criterion.kind == CriterionKind::kPaper;
-    return compare.value_or(paper ? Comparison::kFinal : Comparison::kEveryStep);
-  }
+  Comparison comparison() const { return compare.value_or(comparison_by(criterion)); }
   SimulatorSpec simulator;
   Limits limits;
   std::optional<Expectation> expect;

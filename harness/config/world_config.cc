@@ -16,6 +16,7 @@ namespace {
 SolverSpec read_solver(const YamlNode& node, base::DiagnosticSink& sink) {
   SolverSpec solver;
   YamlFields fields(node, key_text(Key::kSolver), sink);
+  fields.may_be_absent();
   fields.only({Key::kTimestepS, "gravity_m_s2", Key::kErp, Key::kCfm, Key::kSurfaceLayerM,
                Key::kMaxCorrectingVelocityMS, Key::kStartPenetrationM, Key::kMaxContactsPerPair,
                Key::kSleepLinearMS, Key::kSleepAngularRadS, Key::kSleepAfterS, Key::kContactErp,
@@ -47,7 +48,7 @@ void read_axis(const YamlFields& fields, JointSpec& joint) {
   if (axis == nullptr) return;
   if (axis->is_list()) {
     read_vector(fields, Key::kAxis, joint.axis_W);
-  } else if (const auto word = fields.choice(Key::kAxis, Key::kAxis, kWords)) {
+  } else if (const auto word = fields.choice(Key::kAxis, Key::kAxis, kWords, 0)) {
     joint.axis_W = Eigen::Vector3d::Unit(static_cast<Eigen::Index>(*word));
   }
 }
@@ -109,7 +110,7 @@ JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
   fields.only({Key::kType, Key::kParent, Key::kChild, Key::kAxis, Key::kRangeM, Key::kMaxForceN,
                Key::kMaxTorqueNm, Key::kHandle, Key::kAtM, Key::kRangeRad, Key::kDampingNSM,
                Key::kDampingNmS, Key::kSuspension});
-  const auto type = fields.choice(Key::kType, "type of joint", kTypes);
+  const auto type = fields.choice(Key::kType, "type of joint", kTypes, 0);
   if (type == std::size_t{1}) joint.type = JointType::kFixed;
   if (type == std::size_t{2}) joint.type = JointType::kGantry;
   if (type == std::size_t{3}) {
@@ -118,6 +119,7 @@ JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
     fields.require(Key::kAtM);
   }
   refuse_other_types(fields, joint.type);
+  joint.parent = "world";
   fields.text(Key::kParent, joint.parent);
   if (joint.parent == "world") joint.parent.clear();
   fields.require(Key::kChild);
@@ -145,6 +147,7 @@ FrictionSpec read_friction(const YamlNode& node, const std::vector<std::string>&
                            base::DiagnosticSink& sink) {
   FrictionSpec friction;
   YamlFields fields(node, key_text(Key::kFriction), sink);
+  fields.may_be_absent();
   fields.number(Key::kDefault, kNotNegative, friction.fallback);
   for (const auto& entry : node.entries) {
     if (entry.key == Key::kDefault) continue;
@@ -224,10 +227,12 @@ WorldSpec read_world(const YamlNode& node, EngineKind engine, base::DiagnosticSi
   }
   if (const auto* joints = fields.find(Key::kJoints)) {
     const YamlFields all(*joints, key_text(Key::kJoints), sink);
+    all.may_be_absent();
     for (const auto& entry : joints->entries) world.joints.push_back(read_joint(entry, sink));
   }
   if (const auto* places = fields.find(Key::kPlaces)) {
     const YamlFields all(*places, key_text(Key::kPlaces), sink);
+    all.may_be_absent();
     for (const auto& entry : places->entries) world.places.push_back(read_place(entry, sink));
   }
   if (const auto* robot = fields.find(Key::kRobot)) read_robot(*robot, world, sink);

@@ -121,6 +121,7 @@ bool check_radians(const Interval& angles_rad, const YamlNode& node, std::string
 
 std::optional<std::string> read_text(const YamlNode& node, std::string_view name,
                                      base::DiagnosticSink& sink) {
+  ReadLog::text(node);
   if (node.is_scalar() && !node.text.empty()) return node.text;
   sink.error(codes::kWrongYamlKind, node.range, name, describe(node), "a text");
   return std::nullopt;
@@ -162,6 +163,17 @@ std::optional<Value> read_value(const YamlNode& node, std::string_view name,
   return Value(node.text);
 }
 
+YamlNode with_key(const YamlNode& node, std::string_view key) {
+  if (!node.is_scalar()) return node;
+  ReadLog::stands_for(node, key);
+  YamlNode map = node;  // with its id, so that what is said of the map is said of the scalar
+  map.kind = YamlNode::Kind::kMap;
+  map.text.clear();
+  map.quoted = false;
+  map.entries.push_back({std::string(key), node.range, node});
+  return map;
+}
+
 YamlFields::YamlFields(const YamlNode& node, std::string what, base::DiagnosticSink& sink)
     : node_(node), what_(std::move(what)), sink_(sink) {
   if (!node.is_map()) {
@@ -170,6 +182,7 @@ YamlFields::YamlFields(const YamlNode& node, std::string what, base::DiagnosticS
 }
 
 YamlFields& YamlFields::only(std::span<const std::string_view> known) {
+  ReadLog::known(node_, known);
   const std::vector<std::string> names(known.begin(), known.end());
   for (const auto& entry : node_.entries) {
     if (std::find(names.begin(), names.end(), entry.key) != names.end()) continue;
@@ -192,6 +205,7 @@ const YamlNode* YamlFields::find(std::string_view key) const {
 }
 
 const YamlNode* YamlFields::require(std::string_view key) const {
+  ReadLog::required(node_, key);
   const auto* value = find(key);
   if (value == nullptr && node_.is_map()) {
     sink_.error(codes::kMissingKey, node_.range, what_, key);
@@ -200,6 +214,7 @@ const YamlNode* YamlFields::require(std::string_view key) const {
 }
 
 void YamlFields::number(std::string_view key, const NumberBounds& bounds, double& out) const {
+  ReadLog::fallback(node_, key, out);
   std::optional<double> value;
   number(key, bounds, value);
   if (value) out = *value;
@@ -213,6 +228,7 @@ void YamlFields::number(std::string_view key, const NumberBounds& bounds,
 }
 
 void YamlFields::angle(std::string_view key, double& out) const {
+  ReadLog::fallback(node_, key, out);
   std::optional<double> value;
   number(key, kAnyNumber, value);
   if (!value || !check_radians({*value, *value, true}, *find(key), name_of(key), sink_)) return;
@@ -221,6 +237,7 @@ void YamlFields::angle(std::string_view key, double& out) const {
 
 void YamlFields::integer(std::string_view key, std::int64_t lower, std::int64_t upper,
                          std::int64_t& out) const {
+  ReadLog::fallback(node_, key, std::to_string(out));
   std::optional<std::int64_t> value;
   integer(key, lower, upper, value);
   if (value) out = *value;
@@ -234,6 +251,13 @@ void YamlFields::integer(std::string_view key, std::int64_t lower, std::int64_t 
 }
 
 void YamlFields::boolean(std::string_view key, bool& out) const {
+  ReadLog::fallback(node_, key, std::string(out ? "true" : "false"));
+  std::optional<bool> value;
+  boolean(key, value);
+  if (value) out = *value;
+}
+
+void YamlFields::boolean(std::string_view key, std::optional<bool>& out) const {
   const auto* value = find(key);
   if (value == nullptr) return;
   if (value->is_scalar() && !value->quoted && (value->text == "true" || value->text == "false")) {
@@ -245,6 +269,7 @@ void YamlFields::boolean(std::string_view key, bool& out) const {
 }
 
 void YamlFields::text(std::string_view key, std::string& out) const {
+  if (!out.empty()) ReadLog::fallback(node_, key, out);
   const auto* value = find(key);
   if (value == nullptr) return;
   if (auto read = read_text(*value, name_of(key), sink_)) out = std::move(*read);
@@ -257,6 +282,7 @@ void YamlFields::text(std::string_view key, std::optional<std::string>& out) con
 }
 
 void YamlFields::texts(std::string_view key, std::vector<std::string>& out) const {
+  ReadLog::fallback(node_, key, out);
   const auto* value = find(key);
   if (value == nullptr) return;
   if (!value->is_list()) {
@@ -283,6 +309,13 @@ std::optional<std::size_t> YamlFields::choice(std::string_view key, std::string_
   auto error = sink_.error(codes::kYamlUnknownChoice, value->range, *word, kind);
   add_suggestion(error, *word, names, "known");
   return std::nullopt;
+}
+
+std::optional<std::size_t> YamlFields::choice(std::string_view key, std::string_view kind,
+                                              std::span<const std::string_view> choices,
+                                              std::size_t fallback) const {
+  ReadLog::fallback(node_, key, std::string(choices[fallback]));
+  return choice(key, kind, choices);
 }
 
 std::optional<std::vector<double>> YamlFields::numbers(std::string_view key,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "harness/config/keys.h"
+#include "harness/config/read_log.h"
 #include "harness/config/yaml_reader.h"
 #include "harness/region/region.h"
 #include "harness/simulator/simulator.h"
@@ -34,7 +35,9 @@ inline constexpr NumberBounds kNotNegative{0.0, std::numeric_limits<double>::inf
 inline constexpr NumberBounds kOpenUnit{0.0, 1.0, true, true};
 
 /// Typed access to the fields of a map. A getter leaves `out` alone when the key is missing, and
-/// reports at the value when it has the wrong kind or is out of bounds.
+/// reports at the value when it has the wrong kind or is out of bounds. Unless `out` is an
+/// optional, what it holds before is the default, and is written into the tree's ReadLog: a key
+/// whose absence means anything else needs an optional.
 class YamlFields {
  public:
   /// `what` names the map in messages: "`criterion`", "the body `box`". Reports when `node` is not
@@ -66,12 +69,19 @@ class YamlFields {
   void integer(std::string_view key, std::int64_t lower, std::int64_t upper,
                std::optional<std::int64_t>& out) const;
   void boolean(std::string_view key, bool& out) const;
+  void boolean(std::string_view key, std::optional<bool>& out) const;
   void text(std::string_view key, std::string& out) const;
   void text(std::string_view key, std::optional<std::string>& out) const;
   void texts(std::string_view key, std::vector<std::string>& out) const;
   /// One of `choices`, or kYamlUnknownChoice: "`x` is not a known `kind`".
   std::optional<std::size_t> choice(std::string_view key, std::string_view kind,
                                     std::span<const std::string_view> choices) const;
+  /// The same with a default, which is written down and not returned.
+  std::optional<std::size_t> choice(std::string_view key, std::string_view kind,
+                                    std::span<const std::string_view> choices,
+                                    std::size_t fallback) const;
+  /// Leaving the whole map out means the same as leaving it empty.
+  void may_be_absent() const { ReadLog::optional(node_); }
   /// Exactly `count` numbers.
   std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count) const;
 
@@ -87,6 +97,10 @@ class YamlFields {
   std::string_view section_;
   std::span<const std::string_view> elsewhere_;
 };
+
+/// The map that a scalar abbreviates (`search: 40` for `search: {runs: 40}`); any other node as it
+/// is.
+YamlNode with_key(const YamlNode& node, std::string_view key);
 
 /// The value of a scalar, or a report that says what `name` is instead.
 std::optional<double> read_number(const YamlNode& node, std::string_view name,

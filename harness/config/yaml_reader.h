@@ -15,6 +15,7 @@
 
 namespace parallax::harness {
 
+class ReadLog;
 struct YamlEntry;
 
 /// A YAML value with its place. A scalar's range is the value without quotes; the range of a map, a
@@ -27,6 +28,8 @@ struct YamlNode {
   bool quoted = false;  // then it is text, whatever it looks like
   std::vector<YamlNode> items;
   std::vector<YamlEntry> entries;  // in source order, keys distinct
+  ReadLog* log = nullptr;          // where its readers write down what they know of its fields
+  std::uint32_t id = 0;            // there; copies keep it
 
   bool is_map() const { return kind == Kind::kMap; }
   bool is_list() const { return kind == Kind::kList; }

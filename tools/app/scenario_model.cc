@@ -16,6 +16,7 @@
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/replay.h"
 #include "harness/config/load_limits.h"
+#include "harness/config/scenario_settings.h"
 #include "harness/discrete/model_simulator.h"
 #include "harness/simulator/command_files.h"
 #include "tools/app/edited_scenario.h"
@@ -179,6 +180,7 @@ struct Switches {
   bool watched = false;
   bool as_run = false;  // in closed loop, if the scenario or `execution` says so
   std::optional<harness::Execution> execution = std::nullopt;
+  harness::ScenarioSettings* settings = nullptr;  // as in LoadLimits
   void apply(compiler::CompileInput& input) const {
     input.costs = costs;
     input.emit_pass = emit_pass;
@@ -223,9 +225,9 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
     return sink.already_reported();
   }
   const auto first = context.files().size();  // what was read before is no part of it
-  auto scenario =
-      harness::load_scenario(path, context.files(), sink,
-                             harness::LoadLimits{context.form().allow_outside, &context.stop()});
+  auto scenario = harness::load_scenario(
+      path, context.files(), sink,
+      harness::LoadLimits{context.form().allow_outside, &context.stop(), switches.settings});
   if (!scenario) return sink.already_reported();
   auto scenario_hash = harness::hash_of_sources(context.files(), first);
   note_command(scenario->simulator.command, context.files());
@@ -404,6 +406,26 @@ base::Result<compiler::Compilation> compile(const ModelOptions& options, Context
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
                                                 Context& context) {
   return load(path, context, {});
+}
+
+base::Result<ScenarioModel> load_compared_scenario(const std::filesystem::path& path,
+                                                   harness::ScenarioSettings& settings,
+                                                   Context& context) {
+  Switches switches;
+  switches.settings = &settings;
+  auto loaded = load(path, context, switches);
+  if (!loaded) return context.sink().already_reported();
+  const auto& command = loaded->scenario.simulator.command;
+  if (!command.empty()) {
+    // What the files say that it names; its words are a setting of their own.
+    harness::insert(settings, {{"simulator", "command", "files"},
+                               "SHA-256 " + harness::hash_of_command(command),
+                               std::nullopt,
+                               true,
+                               path.string(),
+                               0});
+  }
+  return loaded;
 }
 
 base::Result<ScenarioModel> load_watched_scenario(const std::filesystem::path& path,

@@ -18,8 +18,9 @@
 #include "tools/app/model_options.h"
 
 namespace parallax::harness {
+struct ScenarioSettings;
 struct SteppedModel;
-}
+}  // namespace parallax::harness
 
 namespace parallax::tools {
 
@@ -46,6 +47,12 @@ base::Result<ScenarioModel> load_scenario_run(const std::filesystem::path& path,
 /// against the model.
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
                                                 Context& context);
+
+/// The same for comparing it with another: also lists what it says beside model and plan, and what
+/// the files hold that an external simulator's command names.
+base::Result<ScenarioModel> load_compared_scenario(const std::filesystem::path& path,
+                                                   harness::ScenarioSettings& settings,
+                                                   Context& context);
 
 /// The same where nothing is simulated: the scenario's unobserved events need no action.
 base::Result<ScenarioModel> load_watched_scenario(const std::filesystem::path& path,

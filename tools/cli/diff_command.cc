@@ -90,7 +90,7 @@ int diff_models(const DiffOptions& options, RevisionKind old_kind, RevisionKind 
   const auto report = found->report();
   Comparison out;
   out.kind = "model";
-  out.differs = !found->facts.empty();
+  out.differs = !found->facts.empty() || (found->settings && !found->settings->empty());
   if (found->traces) {
     out.differs = out.differs || found->traces->lost.answer == runtime::Answer::kFound ||
                   found->traces->gained.answer == runtime::Answer::kFound;
@@ -98,10 +98,12 @@ int diff_models(const DiffOptions& options, RevisionKind old_kind, RevisionKind 
   }
   if (invocation.options().json) {
     out.fields = facts_fields(report, "declarations", "axioms") +
+                 ",\"settings\":" + (found->settings ? settings_json(*found->settings) : "null") +
                  ",\"traces\":" + traces_json(*found) +
                  ",\"remarks\":" + base::json_text(Json(found->remarks));
   } else {
     out.text = facts_text(report, "declarations", "axioms", options.stat);
+    if (found->settings) out.text += settings_text(*found->settings, options.stat);
     for (const auto& remark : found->remarks) out.text += remark + '\n';
     out.text += traces_text(*found, options.stat);
   }

@@ -57,6 +57,8 @@ base::Result<GateReport> hold_gate(const GateInput& input, const harness::GateRu
 base::Result<std::vector<RuleResult>> gate_models(const GateInput& input,
                                                   const harness::GateRules::Models& rules,
                                                   GateReport& report, Context& context);
+/// A rule about the settings of two scenarios.
+RuleResult setting_rule(const ModelDifference& found, const harness::GateRules::SettingRule& rule);
 base::Result<std::vector<RuleResult>> gate_runs(const GateInput& input,
                                                 const harness::GateRules::Runs& rules,
                                                 GateReport& report, Context& context);

@@ -153,6 +153,7 @@ base::Result<std::vector<RuleResult>> gate_models(const GateInput& input,
   if (rules.gained_traces) out.push_back(trace_rule(*found, false));
   if (rules.declarations) out.push_back(fact_rule(facts, FactKind::kDeclaration, "declarations"));
   if (rules.axioms) out.push_back(fact_rule(facts, FactKind::kAxiom, "axioms"));
+  for (const auto& rule : rules.settings) out.push_back(setting_rule(*found, rule));
   for (const auto& property : rules.properties) {
     auto rule = property_rule(input, property.text, context);
     if (!rule) return context.sink().already_reported();

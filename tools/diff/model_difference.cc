@@ -138,6 +138,7 @@ class ModelComparison {
     if (options_.facts) {
       compiler::drop_equal_order(out_.old_side.facts, out_.new_side.facts);
       out_.facts = compiler::compare_facts(out_.old_side.facts, out_.new_side.facts);
+      compare_settings();
     }
     if (options_.traces) compare_traces();
     return std::move(out_);
@@ -178,6 +179,18 @@ class ModelComparison {
     use_artifact_facts(out_.old_side);
     use_artifact_facts(out_.new_side);
     return true;
+  }
+
+  void compare_settings() {
+    const auto& a = out_.old_side;
+    const auto& b = out_.new_side;
+    if (a.settings && b.settings) {
+      out_.settings = tools::compare_settings(*a.settings, *b.settings);
+    } else if (a.settings || b.settings) {
+      out_.remarks.push_back(fmt::format(
+          "only {} is a scenario: what is simulated and how it is judged was not compared",
+          (a.settings ? a : b).name));
+    }
   }
 
   void compare_traces() {

@@ -8,6 +8,7 @@
 #include "runtime/compare/trace_difference.h"
 #include "tools/app/model_options.h"
 #include "tools/diff/revision.h"
+#include "tools/diff/settings_difference.h"
 
 namespace parallax::tools {
 
@@ -55,7 +56,7 @@ std::string to_json(const FactReport& report, compiler::FactKind kind);
 
 struct ModelDiffOptions {
   LoadRevision load;
-  bool facts = true;   // compare declarations and axioms
+  bool facts = true;   // compare declarations, axioms and, of scenarios, settings
   bool traces = true;  // compare meaning
   std::size_t list_limit = 200;
 };
@@ -66,6 +67,8 @@ struct ModelDifference {
   /// As far as each goes by itself, where traces are compared: up to the smaller one.
   compiler::Timepoint old_horizon = 0, new_horizon = 0;
   compiler::FactDifference facts;
+  /// Of two scenarios, where facts are compared.
+  std::optional<std::vector<SettingChange>> settings;
   std::optional<runtime::TraceDifference> traces;
   /// What the witnesses depend on; none where it was not tried.
   std::optional<std::vector<Edit>> lost_edits, gained_edits;

@@ -29,7 +29,7 @@ void add_text_facts(const std::vector<std::string>& models, const compiler::Load
 
 base::Result<ModelRevision> load_texts(const std::string& path, const LoadRevision& options,
                                        Context& context) {
-  ModelRevision out{path, RevisionKind::kModel, {}, std::nullopt, true};
+  ModelRevision out{path, RevisionKind::kModel, {}, std::nullopt, std::nullopt, true};
   auto model = options.model;
   model.models.insert(model.models.begin(), path);
   const auto load = compile_input(model, context).load;
@@ -49,7 +49,7 @@ base::Result<ModelRevision> load_texts(const std::string& path, const LoadRevisi
 
 base::Result<ModelRevision> load_compiled(const std::string& path, const LoadRevision& options,
                                           Context& context) {
-  ModelRevision out{path, RevisionKind::kArtifact, {}, std::nullopt, false};
+  ModelRevision out{path, RevisionKind::kArtifact, {}, std::nullopt, std::nullopt, false};
   auto model = compiler::load_artifact(path, context.files(), context.sink());
   if (!model) return context.sink().already_reported();
   const auto horizon = options.model.horizon;
@@ -81,8 +81,9 @@ void add_world_facts(const harness::Scenario& scenario, const compiler::LoadOpti
 }
 
 base::Result<ModelRevision> load_scenario_revision(const std::string& path, Context& context) {
-  ModelRevision out{path, RevisionKind::kScenario, {}, std::nullopt, false};
-  auto loaded = load_scenario_model(path, context);
+  ModelRevision out{path, RevisionKind::kScenario, {}, harness::ScenarioSettings(), std::nullopt,
+                    false};
+  auto loaded = load_compared_scenario(path, *out.settings, context);
   if (!loaded) return context.sink().already_reported();
   const auto& scenario = loaded->scenario;
   std::vector<std::string> models;

@@ -7,6 +7,7 @@
 #include "compiler/artifact/compiled_model.h"
 #include "compiler/compare/fact.h"
 #include "compiler/compare/plan_facts.h"
+#include "harness/config/scenario_settings.h"
 #include "tools/app/context.h"
 #include "tools/app/model_options.h"
 
@@ -33,7 +34,9 @@ struct ModelRevision {
   std::string name;  // as the user wrote it
   RevisionKind kind = RevisionKind::kModel;
   std::vector<compiler::Fact> facts;
-  std::optional<compiler::CompiledModel> compiled;  // if traces are compared
+  /// Of a scenario: everything else that it says.
+  std::optional<harness::ScenarioSettings> settings = std::nullopt;
+  std::optional<compiler::CompiledModel> compiled = std::nullopt;  // if traces are compared
   /// The facts are those of texts, so that a variant can be written from them and compiled.
   bool is_text = false;
 };

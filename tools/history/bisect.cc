@@ -294,7 +294,7 @@ class Bisection {
         return;
       }
     }
-    const auto child = this_program({"parallax", "diff", "--stat", "--quiet", "--color=never", "--",
+    const auto child = this_program({"parallax", "diff", "--quiet", "--color=never", "--",
                                      "before/" + scenario_, "after/" + scenario_},
                                     scratch_.path().string());
     out_.difference = child.out;

@@ -355,6 +355,38 @@ TEST_CASE("rules that are none are refused where they stand") {
   CHECK_MESSAGE(holds(formula.err, "HoldsAt(Alive("), formula.err);
 }
 
+TEST_CASE("a gate and diff see what a scenario says beside its model") {
+  const Gate gate;
+  const auto scenario = [&](const char* name, const char* more) {
+    const auto path = gate.world("load opens.e\n", more);
+    fs::copy_file(gate.folder() / path, gate.folder() / name, fs::copy_options::overwrite_existing);
+    return std::string(name);
+  };
+  const auto before = scenario("two/old.yaml", "");
+  const auto same = scenario("two/same.yaml", "limits: {max_traces: 0}\n");
+  const auto weaker = scenario("two/weaker.yaml", "criterion: {epsilon: 0.1}\n");
+  const std::string rules = "models: {claim: forbidden, physics: forbidden}\n";
+  CHECK(gate.hold(rules, before, before)["passed"] == true);
+  const auto held = gate.hold(rules, before, weaker);
+  CHECK(held["models.claim"] == "broken");
+  CHECK(held["models.physics"] == "kept");
+  CHECK(held["models.claim words"] == "criterion.epsilon 0.05 (default) -> 0.1");
+  CHECK(gate.hold("models: {criterion: not-weaker}\n", weaker, before)["passed"] == true);
+  gate.refused("models: {criterion: not-wider}\n", "not-weaker");
+  gate.refused("models: {wold: forbidden}\n", "world");
+  const auto told = gate.parallax({"diff", before, weaker, "--no-traces"});
+  CHECK(told.code == 1);
+  CHECK(told.out ==
+        "claim: 1 changed\n  ~ two/weaker.yaml:3  criterion.epsilon 0.05 (default) -> 0.1\n");
+  const auto document = Json::parse(gate.parallax({"diff", before, weaker, "--json"}).out);
+  CHECK(document["equal"] == false);
+  CHECK(document["settings"][0]["path"] == "criterion.epsilon");
+  CHECK(document["settings"][0]["changes"] == Json{"claim"});
+  CHECK(gate.parallax({"diff", before, weaker, "--no-traces", "--stat"}).out ==
+        "claim: 1 changed\n");
+  CHECK(gate.parallax({"diff", before, same}).code == 0);
+}
+
 TEST_CASE("what cannot be compared or written is refused before it is") {
   const Gate gate;
   gate.write("rules.yaml", kAll);

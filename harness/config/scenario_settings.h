@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace parallax::harness {
+
+/// What a setting of a scenario can change, in the order in which it does.
+enum class Effect : std::uint8_t { kTraces, kStarts, kPhysics, kJudgement, kClaim, kWords };
+/// "traces", "starts", "physics", "judgement", "claim", "words only"
+std::string_view to_string(Effect effect);
+inline constexpr std::size_t kEffects = 6;
+
+/// One value of a scenario, by the way to it through the keys.
+struct Setting {
+  std::vector<std::string> path;        // "world", "bodies", "box", "shapes", "[0]", "size_m"
+  std::string value;                    // the same text for all writings of one value; one line
+  std::optional<std::string> fallback;  // what the reader takes where the key is left out
+  bool given = true;                    // false: `value` is the fallback
+  std::string file;                     // where it stands, as messages print it; empty: nowhere
+  std::uint32_t line = 0;
+
+  bool is_default() const { return fallback && *fallback == value; }
+};
+
+/// "world.bodies.box.shapes[0].size_m"
+std::string path_text(const std::vector<std::string>& path);
+
+/// What a setting at this path can change; at least one effect for every key of a scenario.
+std::vector<Effect> effects_of(const std::vector<std::string>& path);
+
+/// The keys that the reader admits at a map that it read.
+struct KnownKeys {
+  std::vector<std::string> path;
+  std::vector<std::string> keys;
+};
+
+/// All values of a scenario, with includes laid together and imported worlds and meshes taken over,
+/// but model, plan, binding table and constraints, which are compared as texts of their own. What
+/// is said by layout, comments, order of keys, includes or an abbreviation says nothing here.
+struct ScenarioSettings {
+  std::vector<Setting> all;  // sorted by path, no path twice
+  std::vector<KnownKeys> known;
+};
+
+/// Puts one more value among them.
+void insert(ScenarioSettings& settings, Setting setting);
+
+}  // namespace parallax::harness

@@ -1,0 +1,123 @@
+// Rules of a gate about what scenarios say beside model and plan.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+
+#include "harness/config/scenario_settings.h"
+#include "tools/diff/gate.h"
+
+namespace parallax::tools {
+namespace {
+
+using harness::Effect;
+using Demand = harness::GateRules::Demand;
+
+std::optional<double> number_in(std::string_view text) {
+  double value = 0.0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || rest != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// "[0, 1]", or a number as the interval of this one value.
+std::optional<std::array<double, 2>> interval_in(const std::string& text) {
+  if (const auto one = number_in(text)) return std::array{*one, *one};
+  const auto comma = text.find(", ");
+  if (!text.starts_with('[') || !text.ends_with(']') || comma == text.npos) return std::nullopt;
+  const auto low = number_in(std::string_view(text).substr(1, comma - 1));
+  const auto high = number_in(std::string_view(text).substr(comma + 2, text.size() - comma - 3));
+  if (!low || !high) return std::nullopt;
+  return std::array{*low, *high};
+}
+
+bool concerns(const harness::GateRules::SettingRule& rule, const SettingChange& change) {
+  const auto& effects = change.effects;
+  if (rule.name == "settings") return effects != std::vector{Effect::kWords};
+  if (rule.name == change.path.front() && effects != std::vector{Effect::kWords}) return true;
+  return std::any_of(effects.begin(), effects.end(),
+                     [&](Effect effect) { return to_string(effect) == rule.name; });
+}
+
+/// Broken, kept, or not decidable, where the change has no direction.
+RuleOutcome by_number(const SettingChange& change, bool may_grow) {
+  const auto before = number_in(change.before), after = number_in(change.after);
+  if (!before || !after) return RuleOutcome::kUndecided;
+  return (may_grow ? *after >= *before : *after <= *before) ? RuleOutcome::kKept
+                                                            : RuleOutcome::kBroken;
+}
+
+/// Confidence and runs may grow, epsilon may shrink; all traces may share the error.
+RuleOutcome not_weaker(const SettingChange& change) {
+  const auto& key = change.path.back();
+  if (key == "confidence" || key == "runs") return by_number(change, true);
+  if (key == "epsilon") return by_number(change, false);
+  if (key == "family") {
+    return change.after == "all-traces" ? RuleOutcome::kKept : RuleOutcome::kBroken;
+  }
+  return RuleOutcome::kUndecided;
+}
+
+bool is_axis(const std::string& key) { return harness::axis_from(key).has_value(); }
+
+/// Bounds may move inwards, and regions may go; a bound that goes opens the region.
+RuleOutcome not_wider(const SettingChange& change) {
+  const bool of_axis = is_axis(change.path.back());
+  if (change.after.empty()) {
+    if (of_axis) return RuleOutcome::kBroken;
+    return change.path.size() > 2 && *(change.path.end() - 2) == "cells" ? RuleOutcome::kKept
+                                                                         : RuleOutcome::kUndecided;
+  }
+  if (change.before.empty()) return of_axis ? RuleOutcome::kKept : RuleOutcome::kBroken;
+  const auto before = interval_in(change.before), after = interval_in(change.after);
+  if (!of_axis || !before || !after) return RuleOutcome::kUndecided;
+  const bool is_inside = (*after)[0] >= (*before)[0] && (*after)[1] <= (*before)[1];
+  return is_inside ? RuleOutcome::kKept : RuleOutcome::kBroken;
+}
+
+RuleOutcome outcome_of(Demand demand, const SettingChange& change) {
+  switch (demand) {
+    case Demand::kNotShorter:
+      return by_number(change, true);
+    case Demand::kNotWeaker:
+      return not_weaker(change);
+    case Demand::kNotWider:
+      return not_wider(change);
+    case Demand::kForbidden:
+      break;
+  }
+  return RuleOutcome::kBroken;
+}
+
+RuleOutcome worse_of(RuleOutcome a, RuleOutcome b) {
+  if (a == RuleOutcome::kBroken || b == RuleOutcome::kBroken) return RuleOutcome::kBroken;
+  return a == RuleOutcome::kUndecided ? a : b;
+}
+
+}  // namespace
+
+RuleResult setting_rule(const ModelDifference& found, const harness::GateRules::SettingRule& rule) {
+  RuleResult out{"models." + rule.name, RuleOutcome::kKept, "none changed"};
+  if (!found.settings) {
+    const bool mixed = found.old_side.settings || found.new_side.settings;
+    out.outcome = mixed ? RuleOutcome::kUndecided : RuleOutcome::kKept;
+    out.words = mixed ? "only one of the two is a scenario" : "neither is a scenario";
+    return out;
+  }
+  std::vector<SettingChange> changes;
+  for (const auto& change : *found.settings) {
+    if (!concerns(rule, change)) continue;
+    out.outcome = worse_of(out.outcome, outcome_of(rule.demand, change));
+    changes.push_back(change);
+  }
+  if (changes.empty()) return out;
+  out.words = changes.size() == 1 ? change_text(changes.front())
+                                  : fmt::format("{} changed", changes.size());
+  if (out.outcome == RuleOutcome::kUndecided) out.words += ", which has no order";
+  out.witness = settings_text(changes, false);
+  return out;
+}
+
+}  // namespace parallax::tools
