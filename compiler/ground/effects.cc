@@ -331,7 +331,7 @@ void EffectGrounder::find_lost(const EffectAxiom& effect) {
   const auto& time = typed.terms[effect.time];
   const auto& fluent = typed.terms[effect.fluent];
   const auto& event = typed.terms[effect.event];
-  // That program loses sight of effects in conjunctions (W2001).
+  // The 2005 program does not see effects inside conjunctions (W2001).
   if (effect.shares_instances || time.kind != TermKind::kVariable ||
       fluent.kind != TermKind::kApply || event.kind != TermKind::kApply) {
     return;

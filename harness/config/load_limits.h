@@ -15,7 +15,7 @@ struct LoadLimits {
   /// Ends the processes that read meshes and worlds of other formats when it is raised; what they
   /// were reading is then reported as not to be read.
   const std::atomic<bool>* stop = nullptr;
-  /// Where to list the values of the scenario, for comparing it with another; null: nowhere.
+  /// Receives the values of the scenario, for comparison with another one; may be null.
   ScenarioSettings* settings = nullptr;
 };
 

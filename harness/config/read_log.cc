@@ -50,7 +50,7 @@ void ReadLog::fallback(const YamlNode& map, std::string_view key, std::string va
 }
 
 void ReadLog::fallback(const YamlNode& map, std::string_view key, double value) {
-  // What is filled in later, from other values, is no number yet.
+  // A value that is filled in later from other values is no number yet.
   if (map.log != nullptr && std::isfinite(value)) fallback(map, key, number_text(value));
 }
 

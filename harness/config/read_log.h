@@ -14,9 +14,9 @@ namespace parallax::harness {
 
 struct YamlNode;
 
-/// What the readers of a tree say about its fields, by the ids of its nodes: the value of a key
-/// that is not given, which scalars are texts, which stand for a map. Nothing else knows the
-/// defaults, so whoever compares scenarios asks the readers, who write them down here.
+/// Notes that the readers of a tree make about its fields, by the ids of its nodes: the default of a
+/// key that is not given, which scalars are texts, which stand for a map. The readers alone know
+/// the defaults; a comparison of scenarios finds them here.
 class ReadLog {
  public:
   struct Notes {

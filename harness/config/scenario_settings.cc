@@ -250,7 +250,7 @@ std::vector<Effect> effects_of(const std::vector<std::string>& path) {
   if (path.size() == 3 && path[0] == Key::kMapping && path[2] == Key::kIgnored) {
     return {Effect::kWords};
   }
-  // Where starts are drawn inside a region is no border of it.
+  // The interval in which starts are drawn is no border of the region.
   const bool is_start =
       path[0] == Key::kRegions && std::find(path.begin(), path.end(), Key::kStart) != path.end();
   if (is_start) return {Effect::kStarts};

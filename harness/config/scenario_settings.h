@@ -8,7 +8,7 @@
 
 namespace parallax::harness {
 
-/// What a setting of a scenario can change, in the order in which it does.
+/// The effects that a setting of a scenario can have, in the order of the pipeline.
 enum class Effect : std::uint8_t { kTraces, kStarts, kPhysics, kJudgement, kClaim, kWords };
 /// "traces", "starts", "physics", "judgement", "claim", "words only"
 std::string_view to_string(Effect effect);
@@ -29,7 +29,7 @@ struct Setting {
 /// "world.bodies.box.shapes[0].size_m"
 std::string path_text(const std::vector<std::string>& path);
 
-/// What a setting at this path can change; at least one effect for every key of a scenario.
+/// Effects of a setting at this path; at least one for every key of a scenario.
 std::vector<Effect> effects_of(const std::vector<std::string>& path);
 
 /// The keys that the reader admits at a map that it read.

@@ -39,7 +39,7 @@ class Arm {
   bool finger_at_rest() const { return finger_.at_rest(); }
   /// The force of the squeeze that lasts [N]; 0: the fingers were opened, or never closed.
   double squeeze_n() const { return finger_.is_pushing() ? finger_force_n_ : 0.0; }
-  /// Of the tool against what the arm hangs on, as motions ask for it [m/s2].
+  /// Acceleration of the tool against the arm's mount, as motions ask for it [m/s2].
   double asked_acceleration() const;
 
   Eigen::Vector3d tool() const;  // in the world [m]

@@ -16,7 +16,7 @@
 
 namespace parallax::harness {
 
-/// What a gripper is told to do in a step.
+/// Commands to a gripper in one step.
 struct GripDemand {
   double squeeze_n = 0.0;                       // 0: it does not squeeze
   double level_m_s2 = 0.0, upright_m_s2 = 0.0;  // accelerations that motions ask for
@@ -29,7 +29,7 @@ struct GripLoss {
   double margin = 0.0;  // the least since the pads closed on it
 };
 
-/// What became of a body in a gripper since the last reset.
+/// State of a body in a gripper since the last reset.
 enum class GripState : std::uint8_t { kNever, kInGrip, kLetGo, kLost };
 
 /// Watches the pads of all grippers of a world.
@@ -46,7 +46,7 @@ class GripWatch {
   /// is lost, however short a time ago it left.
   void end_act();
 
-  /// Of the act, in the order in which they came.
+  /// Losses during the act, in the order of time.
   const std::vector<GripLoss>& losses() const { return losses_; }
   GripState state(std::uint32_t gripper, BodyId body) const;
 

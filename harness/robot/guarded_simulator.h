@@ -19,7 +19,7 @@
 
 namespace parallax::harness {
 
-/// A grip that holds more than so many times what it has to is not expected to lose its load.
+/// Margin by Coulomb's law above which a lost load is simulated again.
 inline constexpr double kSureMargin = 2.0;
 
 /// What a repetition with another solver says of a loss.
