@@ -14,8 +14,8 @@ namespace parallax::harness {
 
 struct YamlNode;
 
-/// Notes that the readers of a tree make about its fields, by the ids of its nodes: the default of a
-/// key that is not given, which scalars are texts, which stand for a map. The readers alone know
+/// Notes that the readers of a tree make about its fields, by the ids of its nodes: the default of
+/// a key that is not given, which scalars are texts, which stand for a map. The readers alone know
 /// the defaults; a comparison of scenarios finds them here.
 class ReadLog {
  public:
