@@ -14,7 +14,7 @@
 namespace parallax::compiler {
 namespace {
 
-constexpr std::size_t kWidth = 100;
+constexpr std::size_t kLineWidth = 100;
 
 /// Names of the model that stand for constants, and the other way round.
 using Names = std::map<std::string, std::string>;
@@ -68,8 +68,8 @@ std::string axiom_text(const std::vector<std::string>& variables, const std::str
   }
   const auto quantifier = "[" + list + time + "]";
   const auto line = quantifier + " " + condition + " -> " + effect + ".";
-  if (line.size() <= kWidth) return line;
-  const auto lines = condition.size() + 5 > kWidth ? one_a_line(condition) : condition;
+  if (line.size() <= kLineWidth) return line;
+  const auto lines = condition.size() + 5 > kLineWidth ? one_a_line(condition) : condition;
   return quantifier + "\n  " + lines + " ->\n    " + effect + ".";
 }
 

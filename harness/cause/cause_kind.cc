@@ -12,7 +12,7 @@ namespace parallax::harness {
 namespace {
 
 /// So many runs of one kind and none of the other are taken for all.
-constexpr std::int64_t kEnough = 5;
+constexpr std::int64_t kEnoughRuns = 5;
 
 std::int64_t contradictory_starts(const std::vector<CauseRun>& runs) {
   struct Ends {
@@ -133,7 +133,7 @@ CauseFinding tell_cause(const std::vector<CauseRun>& runs, bool is_model) {
   out.contradictory_starts = contradictory_starts(runs);
   out.rule = failure_rule(runs);
   const auto clean = out.runs - out.failures;
-  if (clean == 0 && out.failures >= kEnough) {
+  if (clean == 0 && out.failures >= kEnoughRuns) {
     out.kind = CauseKind::kAlways;
   } else if (out.rule) {
     out.kind = CauseKind::kRegion;
@@ -205,7 +205,7 @@ std::string kind_words(const CauseFinding& finding, const std::vector<std::strin
       break;
   }
   const auto clean = finding.runs - finding.failures;
-  if (finding.failures >= kEnough && clean >= kEnough) {
+  if (finding.failures >= kEnoughRuns && clean >= kEnoughRuns) {
     return out + fmt::format(
                      "It happened in {} of {} of this trace, and no border of one or two "
                      "start parameters tells in which: it takes more of them, or more runs, "

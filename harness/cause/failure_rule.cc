@@ -13,7 +13,7 @@ namespace parallax::harness {
 namespace {
 
 constexpr std::size_t kParts = 10;
-constexpr std::int64_t kFewest = 5;
+constexpr std::int64_t kFewestRuns = 5;
 constexpr int kShuffles = 999;
 constexpr double kLeastAccuracy = 0.6;
 /// A second border has to be worth this much of foretelling.
@@ -281,7 +281,7 @@ double tree_error(const CauseTree& tree, const std::vector<CauseRun>& runs) {
 std::optional<FailureRule> failure_rule(const std::vector<CauseRun>& runs) {
   std::int64_t failures = 0;
   for (const auto& run : runs) failures += run.failed ? 1 : 0;
-  if (failures < kFewest || static_cast<std::int64_t>(runs.size()) - failures < kFewest) {
+  if (failures < kFewestRuns || static_cast<std::int64_t>(runs.size()) - failures < kFewestRuns) {
     return std::nullopt;
   }
   if (may_be_luck(runs)) return std::nullopt;

@@ -128,8 +128,8 @@ std::vector<std::string> opinion_sentences(const SecondOpinion& opinion) {
 }
 
 std::string opinion_json(const SecondOpinion& opinion) {
-  using Json = nlohmann::ordered_json;
-  Json causes = Json::array(), each = Json::array();
+  using OrderedJson = nlohmann::ordered_json;
+  OrderedJson causes = OrderedJson::array(), each = OrderedJson::array();
   for (const auto& cause : opinions_by_cause(opinion)) {
     causes.push_back({{"cause", cause.cause},
                       {"doubt", to_string(cause.doubt())},
@@ -145,7 +145,7 @@ std::string opinion_json(const SecondOpinion& opinion) {
     if (one.found) each.back()["cause"] = one.cause;
     if (!one.other.empty()) each.back()["words"] = one.other;
   }
-  const Json out = {{"first", opinion.first},
+  const OrderedJson out = {{"first", opinion.first},
                     {"other", opinion.other},
                     {"causes", std::move(causes)},
                     {"clean",

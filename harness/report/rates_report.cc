@@ -14,17 +14,17 @@
 namespace parallax::harness {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json rate_object(const CauseRate& rate) {
-  Json object = {{"cause", rate.cause},
+OrderedJson rate_object(const CauseRate& rate) {
+  OrderedJson object = {{"cause", rate.cause},
                  {"count", rate.count},
                  {"rate", rate.rate},
                  {"lower", rate.lower},
                  {"upper", rate.upper}};
   if (rate.example > 0) object["example"] = rate.example;
   if (!rate.reason.empty()) object["reason"] = rate.reason;
-  if (!rate.start.empty()) object["start"] = state_json<Json>(rate.start);
+  if (!rate.start.empty()) object["start"] = state_json<OrderedJson>(rate.start);
   if (rate.example > 0) {
     object["event"] = rate.event;
     object["fluents"] = rate.fluents;
@@ -96,16 +96,16 @@ std::string_view interval_name(const RatesResult& result) {
 }
 
 std::string rates_json(const RatesResult& result) {
-  Json document = {{"status", "ok"},
+  OrderedJson document = {{"status", "ok"},
                    {"scenario", result.scenario},
                    {"seed", result.seed},
                    {"confidence", result.confidence},
                    {"intervals", result.fixed_runs ? "clopper-pearson" : "anytime"},
                    {"compare", to_string(result.comparison)},
                    {"complete", result.complete},
-                   {"traces", Json::array()}};
+                   {"traces", OrderedJson::array()}};
   for (const TraceRates& trace : result.traces) {
-    Json causes = Json::array();
+    OrderedJson causes = OrderedJson::array();
     for (const CauseRate& rate : trace.causes) causes.push_back(rate_object(rate));
     document["traces"].push_back({{"trace", trace.number},
                                   {"events", trace.trace},
@@ -117,7 +117,7 @@ std::string rates_json(const RatesResult& result) {
                                   {"causes", std::move(causes)}});
     auto& object = document["traces"].back();
     if (trace.of_the_solver > 0) object["of_the_solver"] = trace.of_the_solver;
-    if (trace.law) object["law"] = law_json<Json>(*trace.law);
+    if (trace.law) object["law"] = law_json<OrderedJson>(*trace.law);
     if (!trace.left_out.empty()) object["left_out"] = trace.left_out;
     if (result.until_width > 0.0) object["narrow"] = !result.is_too_wide(trace);
     if (!result.until_known) continue;

@@ -13,13 +13,13 @@
 namespace parallax::harness {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-std::string text_of(const Json& json, int indent) { return base::json_text(json, indent) + '\n'; }
+std::string text_of(const OrderedJson& json, int indent) { return base::json_text(json, indent) + '\n'; }
 
 /// {"box.x": [1, 2], "box.y": 0}
-Json json_of(const std::vector<SampledDimension>& dimensions) {
-  Json out = Json::object();
+OrderedJson json_of(const std::vector<SampledDimension>& dimensions) {
+  OrderedJson out = OrderedJson::object();
   for (const auto& [variable, interval] : dimensions) {
     if (interval.lower == interval.upper) {
       out[variable] = interval.lower;
@@ -31,10 +31,10 @@ Json json_of(const std::vector<SampledDimension>& dimensions) {
 }
 
 /// [{"body": "milk1", "region": "pw1", "share": 0.08, "axes": {"x": [0.1, 0.24]}, "fixed": ["z"]}]
-Json json_of(const std::vector<StartShare>& shares) {
-  Json out = Json::array();
+OrderedJson json_of(const std::vector<StartShare>& shares) {
+  OrderedJson out = OrderedJson::array();
   for (const auto& share : shares) {
-    Json axes = Json::object();
+    OrderedJson axes = OrderedJson::object();
     for (const auto& axis : share.axes) axes[axis.axis] = {axis.drawn, axis.whole};
     out.push_back({{"body", share.body},
                    {"region", share.region},
@@ -45,8 +45,8 @@ Json json_of(const std::vector<StartShare>& shares) {
   return out;
 }
 
-Json json_of(const std::vector<DivergingFluent>& fluents) {
-  auto out = Json::array();
+OrderedJson json_of(const std::vector<DivergingFluent>& fluents) {
+  auto out = OrderedJson::array();
   for (const auto& fluent : fluents) {
     out.push_back({{"fluent", fluent.fluent},
                    {"timepoint", fluent.timepoint},
@@ -65,8 +65,8 @@ std::vector<std::string> ignored_names(const std::vector<ComparedFluents>& compa
 }
 
 /// [{"fluent": "Holding(..)", "compared": "every-step"}, {.., "compared": "ignored", "why": ".."}]
-Json json_of(const std::vector<ComparedFluents>& compared) {
-  auto out = Json::array();
+OrderedJson json_of(const std::vector<ComparedFluents>& compared) {
+  auto out = OrderedJson::array();
   for (const auto& entry : compared) {
     const bool ignored = entry.how == ComparedFluents::How::kIgnored;
     const bool final = entry.how == ComparedFluents::How::kAtTheEnd;
@@ -81,14 +81,14 @@ Json json_of(const std::vector<ComparedFluents>& compared) {
   return out;
 }
 
-Json json_of(const std::vector<CoverItem>& items) {
-  auto out = Json::array();
+OrderedJson json_of(const std::vector<CoverItem>& items) {
+  auto out = OrderedJson::array();
   for (const auto& item : items) out.push_back({{"place", item.place}, {"what", item.what}});
   return out;
 }
 
-Json json_of(const CoverResult& cover) {
-  Json out = {{"end", to_string(cover.end)},
+OrderedJson json_of(const CoverResult& cover) {
+  OrderedJson out = {{"end", to_string(cover.end)},
               {"items", cover.items},
               {"shown", cover.items - std::ssize(cover.left)},
               {"executions", cover.drawn},
@@ -101,8 +101,8 @@ Json json_of(const CoverResult& cover) {
   return out;
 }
 
-Json json_of(const SearchResult& search) {
-  Json out = {{"strategy", to_string(search.spec.strategy)},
+OrderedJson json_of(const SearchResult& search) {
+  OrderedJson out = {{"strategy", to_string(search.spec.strategy)},
               {"asked", search.spec.runs},
               {"simulations", search.runs},
               {"invalid", search.invalid},
@@ -116,20 +116,20 @@ Json json_of(const SearchResult& search) {
   return out;
 }
 
-Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& compared) {
+OrderedJson json_of(const TraceResult& result, const std::vector<ComparedFluents>& compared) {
   const auto& trace = *result.trace;
-  auto events = Json::array();
-  auto sources = Json::array();
+  auto events = OrderedJson::array();
+  auto sources = OrderedJson::array();
   for (std::size_t t = 0; t < trace.event_count(); ++t) {
-    auto event = event_json<Json>(trace, t);
+    auto event = event_json<OrderedJson>(trace, t);
     events.push_back(std::move(event["event"]));
     sources.push_back(std::move(event["source"]));
   }
-  Json out = {{"trace", trace.number},
+  OrderedJson out = {{"trace", trace.number},
               {"verdict", to_string(result.verdict)},
               {"events", std::move(events)},
               {"sources", std::move(sources)},
-              {"initial_state", holds_json<Json>(trace, 0)},
+              {"initial_state", holds_json<OrderedJson>(trace, 0)},
               {"start_region", json_of(result.start_region)},
               {"start_shares", json_of(result.start_shares)},
               {"not_compared", ignored_names(compared)},
@@ -153,7 +153,7 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
     out["start_law"] = result.loop->has_weights ? "weights" : "uniform";
     out["unfinished"] = result.loop->unfinished;
     if (result.loop->guided) out["chosen_starts"] = *result.loop->guided;
-    out["paths"] = Json::array();
+    out["paths"] = OrderedJson::array();
     for (const auto& path : result.loop->paths) {
       out["paths"].push_back({{"events", path.events},
                               {"outcomes", path.outcomes},
@@ -167,7 +167,7 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
   if (result.loop && !result.loop->causes.empty()) {
     out["causes_runs"] = result.loop->causes_runs;
     out["causes_unseen"] = result.loop->causes_unseen;
-    out["causes"] = Json::array();
+    out["causes"] = OrderedJson::array();
     for (const auto& rate : result.loop->causes) {
       out["causes"].push_back({{"cause", rate.cause},
                                {"count", rate.count},
@@ -178,7 +178,7 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
                                {"reason", rate.reason}});
     }
   }
-  if (result.law) out["law"] = law_json<Json>(*result.law);
+  if (result.law) out["law"] = law_json<OrderedJson>(*result.law);
   if (!result.left_out.empty()) out["left_out"] = result.left_out;
   if (result.search) out["search"] = json_of(*result.search);
   out["claim"] = result.claim;
@@ -199,9 +199,9 @@ std::string_view word(Confirmation confirmation) {
 }
 
 /// The path of an executed plan, and where the model cannot follow it.
-void add_path(const Discrepancy& found, Json& out) {
+void add_path(const Discrepancy& found, OrderedJson& out) {
   const auto& record = found.record;
-  auto steps = Json::array();
+  auto steps = OrderedJson::array();
   for (std::size_t i = 0; i < record.outcomes.size(); ++i) {
     const auto& step = record.path->steps[i];
     steps.push_back({{"event", step.event},
@@ -220,14 +220,14 @@ void add_path(const Discrepancy& found, Json& out) {
                     {"together", differs.together}};
 }
 
-Json json_of(const CampaignResult& result, const Discrepancy& found) {
-  auto outcomes = Json::array();
+OrderedJson json_of(const CampaignResult& result, const Discrepancy& found) {
+  auto outcomes = OrderedJson::array();
   for (const auto& outcome : found.record.outcomes) {
     outcomes.push_back({{"status", to_string(outcome.status)},
                         {"reason", outcome.reason},
                         {"sim_time_s", outcome.sim_time_s}});
   }
-  Json out = {{"trace", found.trace},
+  OrderedJson out = {{"trace", found.trace},
               {"sample", found.sample},
               {"seed", found.seed},
               {"kind", to_string(found.kind)},
@@ -240,8 +240,8 @@ Json json_of(const CampaignResult& result, const Discrepancy& found) {
               {"first", json_of(found.first)},
               {"fluents", json_of(found.fluents)},
               {"repeated", word(found.confirmation)},
-              {"start", state_json<Json>(found.record.initial)},
-              {"end", state_json<Json>(found.end)},
+              {"start", state_json<OrderedJson>(found.record.initial)},
+              {"end", state_json<OrderedJson>(found.end)},
               {"outcomes", std::move(outcomes)},
               {"words", discrepancy_sentence(result, found)},
               {"replay", replay_command(result.replay_folder, found)}};
@@ -249,8 +249,8 @@ Json json_of(const CampaignResult& result, const Discrepancy& found) {
   return out;
 }
 
-Json json_of(const CampaignResult& result, bool with_timing) {
-  Json out = {{"status", result.failed ? "error" : "ok"},
+OrderedJson json_of(const CampaignResult& result, bool with_timing) {
+  OrderedJson out = {{"status", result.failed ? "error" : "ok"},
               {"scenario", result.scenario},
               {"seed", result.seed},
               {"verdict", to_string(result.verdict)},
@@ -273,9 +273,9 @@ Json json_of(const CampaignResult& result, bool with_timing) {
         {"traces", nullptr}, {"error", result.spending->text()}, {"claim", result.claim}};
     if (const auto traces = result.spending->traces()) out["family"]["traces"] = *traces;
   }
-  out["traces"] = Json::array();
+  out["traces"] = OrderedJson::array();
   for (const auto& trace : result.traces) out["traces"].push_back(json_of(trace, result.compared));
-  out["discrepancies"] = Json::array();
+  out["discrepancies"] = OrderedJson::array();
   for (const auto& found : result.discrepancies) {
     out["discrepancies"].push_back(json_of(result, found));
   }
@@ -326,7 +326,7 @@ base::Status write_report(const CampaignResult& result, const std::filesystem::p
 
 std::string replay_json(const ReplayResult& result) {
   static constexpr std::string_view kOutcomes[] = {"identical", "differs", "cannot"};
-  Json out = {{"status", "ok"},
+  OrderedJson out = {{"status", "ok"},
               {"sample", fmt::format("{}.{}", result.id.trace, result.id.sample)},
               {"seed", result.seed},
               {"outcome", kOutcomes[static_cast<std::size_t>(result.outcome)]},

@@ -71,25 +71,25 @@ std::string samples_csv(const std::vector<SampleRow>& rows) {
 }
 
 std::string samples_jsonl(const std::vector<SampleRow>& rows) {
-  using Json = nlohmann::ordered_json;
+  using OrderedJson = nlohmann::ordered_json;
   std::string out;
   for (const auto& row : rows) {
-    Json object = {{"trace", row.trace},
+    OrderedJson object = {{"trace", row.trace},
                    {"sample", row.sample},
                    {"seed", row.seed},
                    {"start", row.drawn ? "drawn" : "chosen"},
                    {"rejected", row.rejected},
                    {"retries", row.retries},
                    {"outcome", row.outcome},
-                   {"event", row.event ? Json(*row.event) : Json()},
-                   {"cause", row.cause.empty() ? Json() : Json(row.cause)},
-                   {"reason", row.reason.empty() ? Json() : Json(row.reason)},
+                   {"event", row.event ? OrderedJson(*row.event) : OrderedJson()},
+                   {"cause", row.cause.empty() ? OrderedJson() : OrderedJson(row.cause)},
+                   {"reason", row.reason.empty() ? OrderedJson() : OrderedJson(row.reason)},
                    {"sim_time_s", row.sim_time_s},
-                   {"state", state_json<Json>(row.start)}};
-    auto margins = Json::array();
+                   {"state", state_json<OrderedJson>(row.start)}};
+    auto margins = OrderedJson::array();
     for (std::size_t i = 0; i < row.margins.size(); ++i) {
       if (row.margins[i].empty()) continue;
-      margins.push_back({{"event", i}, {"margins", state_json<Json>(row.margins[i])}});
+      margins.push_back({{"event", i}, {"margins", state_json<OrderedJson>(row.margins[i])}});
     }
     object["margins"] = std::move(margins);
     out += base::json_text(object) + '\n';

@@ -14,7 +14,7 @@ std::vector<Literal> one_of(Literal assumed, std::vector<Literal> any) {
   return any;
 }
 
-bool contains(const DemandedEvents& events, std::uint32_t event) {
+bool has_event(const DemandedEvents& events, std::uint32_t event) {
   return std::binary_search(events.begin(), events.end(), event);
 }
 
@@ -66,7 +66,7 @@ std::optional<DemandedEvents> StepQuery::some(const std::vector<Literal>& given,
   if (demanded_ == nullptr) demanded_ = query(literals_.demanded);
   auto assumptions = given;
   for (const auto event : demanded) {
-    if (!contains(allowed, event)) assumptions.push_back(~literals_.demanded[event]);
+    if (!has_event(allowed, event)) assumptions.push_back(~literals_.demanded[event]);
   }
   const auto answer = demanded_->ask(assumptions, 1);
   if (answer.found.empty()) {
@@ -125,7 +125,7 @@ bool StepQuery::add_least(const std::vector<Literal>& given, const StepQuestion&
     assumptions.insert(assumptions.end(), question.after.begin(), question.after.end());
     for (const auto event : demanded) {
       const auto literal = literals_.demanded[event];
-      assumptions.push_back(contains(events, event) ? literal : ~literal);
+      assumptions.push_back(has_event(events, event) ? literal : ~literal);
     }
     auto states = after_->ask(assumptions, limit - answer.found.size());
     is_complete = states.complete;

@@ -21,7 +21,7 @@ ConstantMap identity(std::size_t count) {
   return map;
 }
 
-bool contains(const std::vector<std::uint32_t>& all, std::uint32_t one) {
+bool has_number(const std::vector<std::uint32_t>& all, std::uint32_t one) {
   return std::find(all.begin(), all.end(), one) != all.end();
 }
 
@@ -99,7 +99,7 @@ std::vector<std::uint32_t> SymmetrySearch::orbits_at(std::size_t level) const {
   const std::vector<std::uint32_t> fixed(bases_.begin(),
                                          bases_.begin() + static_cast<std::ptrdiff_t>(level));
   for (std::uint32_t one = 0; one < set_of_.size(); ++one) {
-    if (!contains(fixed, one)) {
+    if (!has_number(fixed, one)) {
       classes.join(first_of_set.emplace(set_of_[one], one).first->second, one);
     }
   }
@@ -181,7 +181,7 @@ std::vector<std::uint32_t> SymmetrySearch::images_to_try(
   std::vector<std::uint32_t> out;
   std::set<std::uint32_t> sets;
   const auto add = [&](std::uint32_t one) {
-    if (contains(cell, one) && sets.insert(set_of_[one]).second) out.push_back(one);
+    if (has_number(cell, one) && sets.insert(set_of_[one]).second) out.push_back(one);
   };
   for (std::size_t i = 0; i < to.size(); ++i) {
     if (to[i] == constant) add(from[i]);
@@ -243,7 +243,7 @@ mpz_class SymmetrySearch::known_order() const {
   mpz_class order = 1;
   std::map<std::uint32_t, std::uint32_t> left;
   for (std::uint32_t one = 0; one < set_of_.size(); ++one) {
-    if (!contains(bases_, one)) order *= ++left[set_of_[one]];
+    if (!has_number(bases_, one)) order *= ++left[set_of_[one]];
   }
   for (const auto& level : levels_) {
     order *= static_cast<unsigned long>(std::max<std::size_t>(level.orbit.size(), 1));

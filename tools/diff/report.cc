@@ -10,13 +10,13 @@ namespace {
 using compiler::Fact;
 using compiler::FactDifference;
 using compiler::FactKind;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 std::string line(char mark, const Fact& fact) {
   return fmt::format("  {} {}  {}\n", mark, to_string(fact.place), fact.shown);
 }
 
-Json json_of(const Fact& fact) {
+OrderedJson json_of(const Fact& fact) {
   return {{"text", fact.shown}, {"file", fact.place.file}, {"line", fact.place.line}};
 }
 
@@ -62,7 +62,7 @@ std::string to_text(const FactReport& report, FactKind kind, const std::string& 
 
 std::string to_json(const FactReport& report, FactKind kind) {
   const auto difference = of_kind(report, kind);
-  Json out = {{"removed", Json::array()}, {"added", Json::array()}, {"changed", Json::array()}};
+  OrderedJson out = {{"removed", OrderedJson::array()}, {"added", OrderedJson::array()}, {"changed", OrderedJson::array()}};
   for (const auto i : difference.removed) out["removed"].push_back(json_of(report.old_facts[i]));
   for (const auto i : difference.added) out["added"].push_back(json_of(report.new_facts[i]));
   for (const auto& [i, j] : difference.changed) {
@@ -74,7 +74,7 @@ std::string to_json(const FactReport& report, FactKind kind) {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 using runtime::Answer;
 
 constexpr std::size_t kMaxNames = 10;  // that are listed in one line
@@ -189,28 +189,28 @@ SideView view(const ModelDifference& all, bool lost) {
           all.traces->gained, all.gained_edits, edited_places(all.old_side.facts, all.facts, true)};
 }
 
-Json json_of(const runtime::TraceNumber& number) {
+OrderedJson json_of(const runtime::TraceNumber& number) {
   // Beyond 2^53 as a text: JSON readers keep no larger numbers.
   const bool small = number.value <= mpz_class("9007199254740992");
-  Json out;
-  out["value"] = small ? Json(number.value.get_ui()) : Json(number.value.get_str());
+  OrderedJson out;
+  out["value"] = small ? OrderedJson(number.value.get_ui()) : OrderedJson(number.value.get_str());
   out["exact"] = number.exact;
   return out;
 }
 
-Json json_of(const std::optional<runtime::TraceNumber>& number) {
-  return number ? json_of(*number) : Json(nullptr);
+OrderedJson json_of(const std::optional<runtime::TraceNumber>& number) {
+  return number ? json_of(*number) : OrderedJson(nullptr);
 }
 
-Json witness_json(const SideView& side, bool lost) {
+OrderedJson witness_json(const SideView& side, bool lost) {
   const auto& witness = *side.traces.witness;
-  Json out = base::parse_ordered_json(to_jsonl(witness.trace));
+  OrderedJson out = base::parse_ordered_json(to_jsonl(witness.trace));
   out.erase("trace");
   out["excluded_by"] = witness.excluded_by;
   out["events"] = witness.events;
   out["shortest"] = witness.is_shortest;
-  out["impossible"] = witness.impossible ? Json(*witness.impossible) : Json(nullptr);
-  out["contradicts"] = Json::array();
+  out["impossible"] = witness.impossible ? OrderedJson(*witness.impossible) : OrderedJson(nullptr);
+  out["contradicts"] = OrderedJson::array();
   for (const auto i : witness.excluding) {
     const auto& origin = side.refused.compiled->origins[i];
     out["contradicts"].push_back({{"what", to_string(origin.kind)},
@@ -221,22 +221,22 @@ Json witness_json(const SideView& side, bool lost) {
   }
   out["edits"] = nullptr;
   if (!side.edits) return out;
-  out["edits"] = Json::array();
+  out["edits"] = OrderedJson::array();
   for (const auto& edit : *side.edits) {
-    Json kept = edit.kept ? json_of(side.kept.facts[*edit.kept]) : Json(nullptr);
-    Json refused = edit.refused ? json_of(side.refused.facts[*edit.refused]) : Json(nullptr);
-    out["edits"].push_back(lost ? Json{{"old", kept}, {"new", refused}}
-                                : Json{{"old", refused}, {"new", kept}});
+    OrderedJson kept = edit.kept ? json_of(side.kept.facts[*edit.kept]) : OrderedJson(nullptr);
+    OrderedJson refused = edit.refused ? json_of(side.refused.facts[*edit.refused]) : OrderedJson(nullptr);
+    out["edits"].push_back(lost ? OrderedJson{{"old", kept}, {"new", refused}}
+                                : OrderedJson{{"old", refused}, {"new", kept}});
   }
   return out;
 }
 
-Json side_json(const SideView& side, bool lost) {
+OrderedJson side_json(const SideView& side, bool lost) {
   static constexpr const char* kAnswers[] = {"found", "none", "unknown"};
-  Json out = {{"answer", kAnswers[static_cast<std::size_t>(side.traces.answer)]}};
+  OrderedJson out = {{"answer", kAnswers[static_cast<std::size_t>(side.traces.answer)]}};
   out["count"] =
-      side.traces.answer == Answer::kUnknown ? Json(nullptr) : json_of(side.traces.count);
-  out["witness"] = side.traces.witness ? witness_json(side, lost) : Json(nullptr);
+      side.traces.answer == Answer::kUnknown ? OrderedJson(nullptr) : json_of(side.traces.count);
+  out["witness"] = side.traces.witness ? witness_json(side, lost) : OrderedJson(nullptr);
   out["solver_calls"] = side.traces.solve_calls;
   out["refinements"] = side.traces.refinements;
   return out;
@@ -288,7 +288,7 @@ std::string traces_text(const ModelDifference& difference, bool stat) {
 std::string traces_json(const ModelDifference& difference) {
   if (!difference.traces) return "null";
   const auto& traces = *difference.traces;
-  Json out = {{"horizon", traces.horizon},
+  OrderedJson out = {{"horizon", traces.horizon},
               {"shared_fluents", traces.vocabulary.fluents},
               {"shared_events", traces.vocabulary.events},
               {"only_old", traces.vocabulary.only_first},

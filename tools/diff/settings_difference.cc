@@ -14,7 +14,7 @@ namespace {
 
 using harness::Setting;
 using Path = std::vector<std::string>;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr const char* kPresent = "{}";  // the value of a map that says nothing else
 
@@ -160,8 +160,8 @@ std::string place(const SettingChange& change) {
                                                  is_new ? change.new_line : change.old_line});
 }
 
-Json place_json(const std::string& file, std::uint32_t line) {
-  return file.empty() ? Json(nullptr) : Json{{"file", file}, {"line", line}};
+OrderedJson place_json(const std::string& file, std::uint32_t line) {
+  return file.empty() ? OrderedJson(nullptr) : OrderedJson{{"file", file}, {"line", line}};
 }
 
 }  // namespace
@@ -204,12 +204,12 @@ std::string settings_text(const std::vector<SettingChange>& changes, bool stat) 
 }
 
 std::string settings_json(const std::vector<SettingChange>& changes) {
-  Json out = Json::array();
+  OrderedJson out = OrderedJson::array();
   for (const auto& change : changes) {
-    Json effects = Json::array();
+    OrderedJson effects = OrderedJson::array();
     for (const auto effect : change.effects) effects.push_back(to_string(effect));
     const auto value = [](const std::string& text) {
-      return text.empty() ? Json(nullptr) : Json(text);
+      return text.empty() ? OrderedJson(nullptr) : OrderedJson(text);
     };
     out.push_back({{"path", harness::path_text(change.path)},
                    {"old", value(change.before)},

@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kBatch = 10;  // sequences between two models
-constexpr std::int64_t kMostRounds = 400;
+constexpr std::int64_t kMostLearningRounds = 400;
 /// What more clean rounds than these would sharpen is left as it is: they contradict nothing.
 constexpr std::int64_t kSharpened = 1;
 
@@ -58,7 +58,7 @@ class ScenarioLearner {
   const ScenarioModel& loaded() const { return **loaded_; }
   bool over() const {
     return context_.stopped() || result_.simulations >= options_.max_runs ||
-           std::ssize(result_.rounds) >= kMostRounds;
+           std::ssize(result_.rounds) >= kMostLearningRounds;
   }
 
   base::Status prepare() {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kGoodCondition = 30.0;     // shorter than this, no further stage is asked
 constexpr std::size_t kBeam = 24;           // conditions that are made longer
-constexpr std::size_t kMostConditions = 3;  // of one rule
+constexpr std::size_t kMostRuleConditions = 3;  // of one rule
 constexpr std::size_t kMostNarrower = 8;    // rules that are proposed instead of one
 
 struct Counts {
@@ -176,7 +176,7 @@ class OpeningFinder {
       if (!known) rated.push_back(std::move(one));
     }
     std::vector<Candidate> beam = {std::move(bare)};
-    for (std::size_t length = 1; length <= kMostConditions && !beam.empty(); ++length) {
+    for (std::size_t length = 1; length <= kMostRuleConditions && !beam.empty(); ++length) {
       std::vector<Candidate> longer;
       for (const auto& from : beam) {
         for (const auto& unit : rated) {
@@ -256,7 +256,7 @@ std::vector<LearnedRule> narrower_openings(const OpeningProblem& problem, const 
   for (const auto& unit :
        units_that_hold(about, vocabulary, states[pattern->state], binding, UnitStage::kConstants)) {
     auto next = rule;
-    if (next.units.size() < kMostConditions) {
+    if (next.units.size() < kMostRuleConditions) {
       next.units.push_back(unit);
       next.cost += unit.cost;
       consider(next);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kCheapCondition = 30;          // cheaper than this, no further stage is asked
 constexpr std::size_t kMostUnits = 3;        // of one rule
-constexpr std::size_t kMostSteps = 200'000;  // of one search
+constexpr std::size_t kMostSearchSteps = 200'000;  // of one search
 constexpr int kNone = std::numeric_limits<int>::max();
 
 /// Examples in the words of a head.
@@ -42,7 +42,7 @@ class ConditionSearch {
 
  private:
   void descend(const ExampleSet& shown, const ExampleSet& against, int cost) {
-    if (++steps_ > kMostSteps || cost >= best_) return;
+    if (++steps_ > kMostSearchSteps || cost >= best_) return;
     const auto open = against.first();
     if (!open) {
       const int score = cost + (shown.size() < wanted_ ? kAnotherRule : 0);

@@ -15,7 +15,7 @@ namespace parallax::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr const char* kSuite = "mutants_of";
 
@@ -23,7 +23,7 @@ std::string key_of(const Mutant& mutant) {
   return base::sha256_hex(mutant.file + '\0' + mutant.text);
 }
 
-std::optional<MutantOutcome> outcome_of(const std::string& text) {
+std::optional<MutantOutcome> mutant_outcome_of(const std::string& text) {
   constexpr std::array kAll = {MutantOutcome::kNoticed, MutantOutcome::kUnnoticed,
                                MutantOutcome::kEquivalent, MutantOutcome::kInvalid,
                                MutantOutcome::kUnknown};
@@ -41,7 +41,7 @@ std::optional<std::pair<std::string, Judgement>> read_line(const std::string& li
     const auto at = json.find(name);
     return at != json.end() && at->is_string() ? at->get<std::string>() : std::string();
   };
-  const auto outcome = outcome_of(text("outcome"));
+  const auto outcome = mutant_outcome_of(text("outcome"));
   if (!outcome || text("mutant").empty()) return std::nullopt;
   Judgement out{*outcome, text("by"), text("why"), text("told_in")};
   const auto gained = json.find("gained");
@@ -54,7 +54,7 @@ std::optional<std::pair<std::string, Judgement>> read_line(const std::string& li
 }
 
 std::string line_of(const Mutant& mutant, const Judgement& judgement) {
-  return base::json_text(Json{{"mutant", key_of(mutant)},
+  return base::json_text(OrderedJson{{"mutant", key_of(mutant)},
                               {"outcome", to_string(judgement.outcome)},
                               {"by", judgement.by},
                               {"why", judgement.why},
@@ -75,7 +75,7 @@ base::Result<JudgedMutants> JudgedMutants::open(const fs::path& file, const std:
   const auto refuse = [&](const char* why) {
     return sink.error_about(codes::kUsage, file.string(), why);
   };
-  std::string kept = base::json_text(Json{{kSuite, suite}}) + '\n';
+  std::string kept = base::json_text(OrderedJson{{kSuite, suite}}) + '\n';
   if (fs::exists(fs::symlink_status(file, error))) {
     const auto text = base::read_file(file, sink);
     if (!text) return sink.already_reported();

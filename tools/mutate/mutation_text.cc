@@ -9,7 +9,7 @@
 namespace parallax::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 struct Numbers {
   std::size_t noticed = 0, unnoticed = 0, equivalent = 0, invalid = 0, unknown = 0, open = 0;
@@ -75,8 +75,8 @@ std::string readers(const MutationScore& score) {
   return out;
 }
 
-Json json_of(const Mutant& mutant, const Judgement& judgement) {
-  Json out = {{"file", mutant.file},
+OrderedJson json_of(const Mutant& mutant, const Judgement& judgement) {
+  OrderedJson out = {{"file", mutant.file},
               {"line", mutant.line},
               {"kind", mutant.kind},
               {"words", mutant.words},
@@ -85,7 +85,7 @@ Json json_of(const Mutant& mutant, const Judgement& judgement) {
   if (!judgement.why.empty()) out["why"] = judgement.why;
   if (judgement.outcome != MutantOutcome::kUnnoticed) return out;
   out["witness"] = base::parse_ordered_json(judgement.trace_json);
-  if (!out["witness"].is_object()) out["witness"] = Json::object();
+  if (!out["witness"].is_object()) out["witness"] = OrderedJson::object();
   out["witness"].erase("trace");
   out["witness"]["case"] = judgement.told_in;
   out["witness"]["of"] = judgement.gained ? "mutant" : "original";
@@ -130,7 +130,7 @@ std::string mutation_text(const MutationScore& score) {
 
 std::string mutation_document(const MutationScore& score) {
   const auto all = all_of(score);
-  Json out = {{"status", "ok"}, {"cases", score.cases}, {"suite_passes", score.red.empty()}};
+  OrderedJson out = {{"status", "ok"}, {"cases", score.cases}, {"suite_passes", score.red.empty()}};
   if (!score.red.empty()) out["not_passed"] = score.red;
   out["made"] = score.made;
   out["looked_at"] = score.mutants.size() - all.open;
@@ -138,13 +138,13 @@ std::string mutation_document(const MutationScore& score) {
   out["observable"] = all.observable();
   out["score"] =
       all.observable() == 0
-          ? Json(nullptr)
-          : Json(static_cast<double>(all.noticed) / static_cast<double>(all.observable()));
+          ? OrderedJson(nullptr)
+          : OrderedJson(static_cast<double>(all.noticed) / static_cast<double>(all.observable()));
   out["equivalent"] = all.equivalent;
   out["invalid"] = all.invalid;
   out["unknown"] = all.unknown;
   out["passed_over"] = score.passed_over;
-  out["mutants"] = Json::array();
+  out["mutants"] = OrderedJson::array();
   for (std::size_t i = 0; i < score.mutants.size(); ++i) {
     out["mutants"].push_back(json_of(score.mutants[i], score.judgements[i]));
   }
