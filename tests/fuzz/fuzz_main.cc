@@ -7,6 +7,7 @@
 
 #include "tests/fuzz/differential.h"
 #include "tests/fuzz/oracles.h"
+#include "tests/support/deep.h"
 #include "tools/cli/command_line.h"
 
 namespace parallax::test {
@@ -15,6 +16,7 @@ namespace {
 struct FuzzOptions {
   std::uint64_t seed = 1;
   std::uint64_t count = 1000;
+  std::uint64_t deep_count = 0;    // 0: the same
   std::uint64_t large_every = 10;  // every n-th model is of the larger class
   std::size_t max_differences = 5;
   bool clingo = false;
@@ -166,6 +168,7 @@ int run(int argc, char** argv) {
                            "Compares parallax with brute force and clingo on random models");
   table.option("--seed", options.seed, "Seed of the first model").show_default();
   table.option("--count", options.count, "Number of models").show_default();
+  table.option("--deep-count", options.deep_count, "Number of models where PARALLAX_DEEP=1 is set");
   table
       .option("--large-every", options.large_every,
               "Every n-th seed gives a larger model, for clingo alone; 0: none")
@@ -186,6 +189,7 @@ int run(int argc, char** argv) {
     fmt::print("clingo 5 is not installed: SKIPPED, brute force alone\n");
     options.clingo = false;
   }
+  if (is_deep() && options.deep_count != 0) options.count = options.deep_count;
   std::fflush(stdout);
   return fuzz(options);
 }
