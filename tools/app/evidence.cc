@@ -22,7 +22,8 @@ std::optional<double> number_of(const harness::Value& value) {
 std::vector<std::string> varying_parameters(const std::vector<const harness::State*>& starts) {
   std::vector<std::string> out;
   if (starts.empty()) return out;
-  for (const auto& [name, value] : *starts.front()) {
+  for (const auto& parameter : *starts.front()) {
+    const std::string& name = parameter.first;  // clang 14 does not capture a structured binding
     std::set<double> seen;
     const bool is_number = std::all_of(starts.begin(), starts.end(), [&](const auto* start) {
       const auto found = start->find(name);
