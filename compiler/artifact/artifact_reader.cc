@@ -91,7 +91,7 @@ class ArtifactReader {
   std::int64_t minor_ = 0;
   std::int64_t base_ = 0, stride_ = 0, state_slots_ = 0;
   bool has_frame_ = false;
-  std::optional<std::uint64_t> hash_;  // that the lines should have
+  std::optional<std::uint64_t> hash_;  // expected hash of the lines
   base::SourceRange hash_place_;
 };
 
@@ -220,7 +220,7 @@ bool ArtifactReader::read_hash() {
   return cursor_.end_of_line();
 }
 
-/// Are the lines those that were written? Whoever edits a file by hand takes its hash out.
+/// Are the lines those that were written? A file edited by hand has to lose its hash.
 bool ArtifactReader::check_hash() {
   if (!hash_ || *hash_ == cursor_.hash()) return true;
   cursor_.sink().error(codes::kArtifactCounts, hash_place_, "the hash of the lines",

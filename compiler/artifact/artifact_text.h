@@ -15,8 +15,9 @@ namespace parallax::compiler {
 inline constexpr std::int64_t kFormatMajor = 1;
 inline constexpr std::int64_t kFormatMinor = 1;
 
-/// Appends a blank and the word. A word of visible ASCII characters other than `"` and `\` stands
-/// as it is; any other is quoted, with `\"`, `\\` and `\xHH` for what is not visible ASCII.
+/// Appends a blank and the word. A word of visible ASCII characters other than `"` and `\` is
+/// written as it is; any other is quoted, with `\"`, `\\` and `\xHH` for bytes that are not visible
+/// ASCII.
 void append_word(std::string& out, std::string_view word);
 
 /// Hash of an artifact's lines: entries, header and clauses, in order; other comments, the
@@ -31,8 +32,8 @@ class LineHash {
 };
 inline constexpr std::string_view kHashEntry = "c dec hash ";
 
-/// Reads the lines of an artifact and their words, and reports what is wrong at its place. Lines
-/// end with a newline (a carriage return before it is dropped), words are separated by blanks.
+/// Reads the lines of an artifact and their words, and reports errors at their place. Lines end
+/// with a newline (a carriage return before it is dropped), words are separated by blanks.
 /// Functions that return bool report and return false.
 class ArtifactCursor {
  public:
@@ -44,15 +45,15 @@ class ArtifactCursor {
   std::string_view line() const { return line_; }
   /// Bytes of the whole file.
   std::size_t file_size() const { return text_.size(); }
-  /// Of the lines up to the current one.
+  /// Hash of the lines up to the current one.
   std::uint64_t hash() const { return hash_.value(); }
 
   /// The next word as it stands, without unquoting; empty at the end of the line.
   std::string_view raw_word();
   bool at_line_end();
-  /// A word, unquoted. `what` is said when there is none: "a name".
+  /// A word, unquoted. `what` names the expected word in the error: "a name".
   bool word(std::string_view what, std::string& out);
-  /// A decimal number with an optional minus. E6003 if it is none, E6006 beyond the bounds.
+  /// A decimal number with an optional minus. E6003 if it is not a number, E6006 beyond the bounds.
   bool number(std::string_view what, std::int64_t lower, std::int64_t upper, std::int64_t& out);
   bool parse_number(std::string_view text, std::string_view what, std::int64_t lower,
                     std::int64_t upper, std::int64_t& out);

@@ -76,7 +76,8 @@ class ArtifactWriter {
   }
 
   void write_frame() {
-    // What has no objectives is read by readers of the first version.
+    // A model without objectives keeps minor version 0, so that readers of the first version accept
+    // it.
     print("c dec format {}.{}\n", kFormatMajor, model_.objectives.empty() ? 0 : kFormatMinor);
     if (!model_.producer.empty()) line("producer", model_.producer);
     for (const auto& [name, value] : model_.options) {
@@ -289,7 +290,7 @@ class ArtifactWriter {
 
   const CompiledModel& model_;
   const Take& take_;
-  std::string out_;          // what is not yet handed over
+  std::string out_;          // text that is not yet handed over
   std::vector<bool> named_;  // slots of fluents, releases and events
   std::vector<bool> fixed_occur_;
   PlaceWriter places_;

@@ -24,8 +24,8 @@ struct ArtifactOptions {
 std::string to_artifact(const CompiledModel& model, const ArtifactOptions& options = {});
 
 /// The same bytes piece by piece. A folded model gives those of the model with all copies. The
-/// clauses are gone through twice, since the hash of all lines comes before them: what is held is
-/// the model and a piece.
+/// clauses are traversed twice, since the hash of all lines comes before them. Memory: the model
+/// and one piece.
 void write_artifact(const CompiledModel& model, const ArtifactOptions& options,
                     const std::function<void(std::string_view)>& take);
 

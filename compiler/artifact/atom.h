@@ -21,7 +21,7 @@ enum class AtomKind : std::uint8_t {
   kHit,        // the state constraints hold at this timepoint
   kRunning,    // the plan has not ended at this timepoint
   kSucceeded,  // the perform of a step at the timepoint before succeeded
-  kResult,     // what that perform returned
+  kResult,     // the object that this perform returned
   kRegister,   // a returned object that the plan still knows
   kAuxiliary,  // stands for a subformula; no name
   kUnused,     // no clause mentions it
@@ -64,7 +64,7 @@ struct PlanEnd {
   std::string text;
   friend auto operator<=>(const PlanEnd&, const PlanEnd&) = default;
 };
-/// What a perform returned: `cup1`.
+/// The object that a perform returned: `cup1`.
 struct ReturnedObject {
   std::string object;
   friend auto operator<=>(const ReturnedObject&, const ReturnedObject&) = default;
@@ -76,18 +76,18 @@ struct RegisterValue {
   friend auto operator<=>(const RegisterValue&, const RegisterValue&) = default;
 };
 
-/// What an atom says of the plan's control, beside its kind and its timepoint. Nothing for kHit and
-/// kRunning, which say all, and for atoms of the model.
+/// The part of the plan's control that an atom is about, beside its kind and its timepoint. Empty
+/// for kHit and kRunning, whose kind says everything, and for atoms of the model.
 using PlanAtom = std::variant<std::monostate, PlanStepId, PlanCutId, PlanChoiceId, PlanEnd,
                               ReturnedObject, RegisterValue>;
 
 /// As artifacts and messages print it: `L3`, `BOUND(0)`, `CHOICE(0)`, `DONE`, `cup1`,
 /// `?item1=cup1`, `hit`, `running`.
 std::string to_string(AtomKind kind, const PlanAtom& plan);
-/// The atom that is printed so; what is of no other form is an end of the plan.
+/// The atom printed as `text`; a text of no other form is an end of the plan.
 PlanAtom plan_atom(AtomKind kind, std::string_view text);
 
-/// What a SAT variable stands for. Atoms of the model have a `name`, printed without blanks:
+/// Meaning of a SAT variable. Atoms of the model have a `name`, printed without blanks:
 /// `RobotIn(r1)`, `Go(r2)`. Those of the plan have none.
 struct Atom {
   AtomKind kind = AtomKind::kUnused;
@@ -97,7 +97,7 @@ struct Atom {
   friend bool operator==(const Atom&, const Atom&) = default;
 };
 
-/// The name, or what stands for it in atoms of the plan.
+/// The name of an atom of the model, or the printed form of an atom of the plan.
 std::string printed(const Atom& atom);
 
 /// The horizon from which on an atom exists: an event at t needs the step to t + 1.

@@ -12,7 +12,7 @@
 
 namespace parallax::compiler {
 
-// What a file need not say because the clauses tell it.
+// Properties of clauses that a file may leave out because they follow from the clauses.
 
 /// The least horizon at which every variable of the clause exists.
 Timepoint derived_timepoint(const CompiledModel& model, std::span<const Literal> clause);

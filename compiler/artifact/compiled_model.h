@@ -20,7 +20,7 @@
 
 namespace parallax::compiler {
 
-/// What kind of text a clause comes from.
+/// Kind of text that a clause comes from.
 enum class OriginKind : std::uint8_t {
   kAxiom,
   kEffectAxiom,
@@ -31,8 +31,8 @@ enum class OriginKind : std::uint8_t {
   kUnmentioned,  // denies, in the meaning of the 2005 reasoner, what no formula mentions
   kPlanStep,
   kStateConstraint,
-  kObjective,  // what an objective counts; true of every trace, and no reason of anything
-  kTrace,      // of a trace from elsewhere that is held against the model
+  kObjective,  // an objective's counted formulas; true of every trace, no reason of anything
+  kTrace,      // held against the model: part of a trace from elsewhere
 };
 
 /// `axiom`, `effect axiom`, ... as artifacts and messages write it.
@@ -50,7 +50,7 @@ struct TextPlace {
 /// Where a clause comes from. Clauses that no text asks for (frame axioms DEC5 to DEC8) carry the
 /// declaration of their fluent.
 struct Origin {
-  base::SourceRange source;  // of a model that was read from an artifact: a line of that file
+  base::SourceRange source;  // in a model read from an artifact: a line of that file
   OriginKind kind = OriginKind::kAxiom;
   std::string id = {};    // unique in the model; depends on the kind and the text alone
   TextPlace place = {};   // where `source` was when the model was compiled
@@ -167,7 +167,7 @@ struct AtomRef {
 struct CompiledModel {
   std::string producer;                        // "parallax 0.3.0"; empty: not said
   std::vector<SourceText> sources;             // in the order of loading
-  std::map<std::string, std::string> options;  // that the meaning depends on
+  std::map<std::string, std::string> options;  // options that the meaning depends on
 
   Timepoint horizon = 0;
   std::vector<Atom> fixed;  // fixed[v - 1] is variable v
@@ -182,14 +182,14 @@ struct CompiledModel {
   std::vector<std::uint32_t> clause_origins;  // index into `origins`
   std::vector<bool> clause_is_definition;     // defines an auxiliary: true in itself, says nothing
   std::vector<Section> sections;              // cover the clauses, in order
-  /// Of each section only the first copy is among the clauses: enough to write the model, whatever
-  /// its horizon, and to be written is all that such a model is good for.
+  /// True if `clauses` holds only the first copy of each section. That is enough to write the model
+  /// at any horizon, and such a model can only be written.
   bool folded = false;
   std::vector<Origin> origins;
   std::vector<PlanStep> plan;         // by location number; empty without a plan
   std::vector<PlanCut> plan_cuts;     // empty if the whole plan was unrolled
   bool has_constraints = false;       // kHit atoms exist
-  std::vector<Objective> objectives;  // what best traces have least of, the first one first
+  std::vector<Objective> objectives;  // quantities that best traces minimize, the first one first
 
   std::int32_t base() const { return static_cast<std::int32_t>(fixed.size()); }
   std::int32_t stride() const { return static_cast<std::int32_t>(slots.size()); }

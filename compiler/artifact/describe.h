@@ -10,9 +10,9 @@
 
 namespace parallax::compiler {
 
-/// Copies from the source files what a model needs to speak of them without them: the hashes of all
-/// texts, and for every origin and plan step its place, text and id. Origins are put in the order
-/// of their places, so that they do not move when another stage is told to look at them earlier.
+/// Copies from the source files the data that a model needs to report without them: the hashes of
+/// all texts, and for every origin and plan step its place, text and id. Origins are put in the
+/// order of their places, so that they do not move when another stage looks at them earlier.
 void describe_sources(CompiledModel& model, const base::SourceFiles& files);
 
 /// Gives every origin the id that `what` and `text` ask for: 8 hexadecimal digits, and `.2`, `.3`

@@ -13,7 +13,7 @@ namespace parallax::compiler {
 
 namespace {
 
-// "Times" of what is unique in the whole model.
+// "Times" of names that are unique in the whole model.
 constexpr Timepoint kEveryTime = -1;
 constexpr Timepoint kNoTime = -2;
 

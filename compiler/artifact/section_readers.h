@@ -25,7 +25,8 @@ class SymbolReader {
   bool read_atom();
   /// After the clauses: variables that no line names are auxiliaries if a clause mentions them.
   void name_the_rest();
-  /// What the enumeration of plans relies on: the constraints have an atom at every timepoint.
+  /// Checks that the constraints have an atom at every timepoint, as the enumeration of plans
+  /// requires.
   bool check_hits();
 
  private:
@@ -93,7 +94,7 @@ class ClauseReader {
  public:
   ClauseReader(ArtifactCursor& cursor, CompiledModel& model) : cursor_(cursor), model_(model) {}
 
-  /// The current line is the `p` line; `expected_clauses` is what the sections add up to.
+  /// The current line is the `p` line; `expected_clauses` is the sum over the sections.
   bool read(std::uint64_t expected_clauses, const std::vector<std::vector<ClauseRun>>& runs);
 
  private:

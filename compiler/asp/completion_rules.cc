@@ -31,7 +31,8 @@ CompletionRules::CompletionRules(const TypedModel& model, AspNames& names, TermW
 
 void CompletionRules::note(const Axiom& axiom, const std::vector<VariableId>& variables,
                            TypedFormulaId body, const AspFormula& false_body) {
-  // What is defined over effects (Clipped, ECCausal) is no reason of what defines it.
+  // A definition over effects (Clipped, ECCausal) gives no reason for the predicates that define
+  // it.
   if (axiom.mentions_effects && model_.formulas[body].kind == FormulaKind::kIff) return;
   for (std::size_t c = 0; c < model_.completions.size(); ++c) {
     const auto& completion = model_.completions[c];

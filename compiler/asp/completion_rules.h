@@ -19,7 +19,7 @@ class CompletionRules {
   /// The axiom as `[variables] body`, and how its body is false.
   void note(const Axiom& axiom, const std::vector<VariableId>& variables, TypedFormulaId body,
             const AspFormula& false_body);
-  /// What has no reason is false.
+  /// Writes the rules that make a completed atom false if it has no reason.
   void write();
 
  private:

@@ -176,7 +176,8 @@ AspAlternatives FormulaWriter::equivalence(std::vector<Part>& parts, bool value)
   return any;
 }
 
-/// The part as one conjunction, through an auxiliary where it is none; nothing if it is never so.
+/// The part as a single conjunction, through an auxiliary where necessary; none if it never has the
+/// value.
 std::optional<AspBody> FormulaWriter::single(Part& part, bool value) {
   auto& alternatives = part.when(value);
   if (alternatives.empty()) return std::nullopt;
@@ -369,7 +370,7 @@ FormulaWriter::Part FormulaWriter::atom(const TypedFormula& formula) {
   return part;
 }
 
-/// The atom at the point is false, the others are what they are.
+/// Makes the atom at the point false and leaves the others as they are.
 void FormulaWriter::except_point(const AspLiteral& literal, const AspBody& lookups,
                                  Part& part) const {
   if (literal.arguments.empty()) {  // the only atom of the predicate is the one taken for false

@@ -41,7 +41,7 @@ class FormulaWriter {
   const std::string& mentioned(SymbolId predicate);
 
  private:
-  /// What is known of a part that has been read.
+  /// Result for a subformula that has been read.
   struct Part {
     AspBody exists;
     AspAlternatives when_true, when_false;  // only those that were asked for

@@ -13,7 +13,7 @@ namespace parallax::compiler {
 
 namespace {
 
-/// What the program uses itself, and the one word that clingo keeps.
+/// Predicates of the exported program itself, and `not`, the one word that clingo reserves.
 constexpr std::array<std::string_view, 20> kReserved = {
     "not",        "holds_at", "happens",    "released_at",  "initiates",
     "terminates", "releases", "initiated",  "terminated",   "released",

@@ -15,7 +15,7 @@ class ContractViolation : public std::logic_error {
 
 }  // namespace parallax::base
 
-/// Always on, at public boundaries; `owed` says what the caller owed.
+/// Always on, at public boundaries; `owed` names the caller's obligation.
 #define PARALLAX_REQUIRE(condition, owed) \
   ((condition) ? void(0)                  \
                : ::parallax::base::contract_violated(#condition, owed, __FILE__, __LINE__))

@@ -7,7 +7,7 @@
 
 namespace parallax::base {
 
-/// A file descriptor that is closed at the end of its scope; -1 is none.
+/// A file descriptor that is closed at the end of its scope; -1 if there is no file.
 class Descriptor {
  public:
   Descriptor() = default;

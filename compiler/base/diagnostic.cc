@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t kDropped = std::numeric_limits<std::size_t>::max();
 
-/// A message quotes the input, and hostile input has names of a megabyte. The middle goes, so that
-/// both the cause in front and what follows the quotation stay.
+/// Cuts the middle out of a long message: it quotes the input, and hostile input has names of a
+/// megabyte. The cause in front and the text after the quotation stay.
 std::string shortened(std::string message) {
   constexpr std::size_t kLongest = 2000, kKept = 900;
   if (message.size() <= kLongest) return message;

@@ -18,7 +18,7 @@ namespace parallax::base {
 
 enum class Severity : std::uint8_t { kError, kWarning };
 
-/// What an error means for the exit code of the program (docs: interface, exit codes).
+/// Class of an error, which determines the exit code of the program (docs: interface, exit codes).
 enum class DiagnosticClass : std::uint8_t {
   kUsage,         // 2: unknown flag, missing file
   kInput,         // 3: a model, plan, scenario or artifact has an error
@@ -51,7 +51,7 @@ struct Diagnostic {
   std::string message;
   std::vector<DiagnosticNote> notes;
   std::string fix;
-  std::string help;       // what to do here; empty: what the registry says
+  std::string help;       // advice for this place; empty: that of the registry
   std::size_t again = 0;  // further places at which the same name is unknown
 };
 
@@ -78,9 +78,9 @@ class DiagnosticBuilder {
   std::size_t index_;
 };
 
-/// Collects what is wrong with the user's input; never prints. Beyond the limits errors and
-/// warnings are counted but not kept. A name that is unknown is one error, however often it is
-/// used: further places are counted in a note.
+/// Collects errors in the user's input; never prints. Beyond the limits errors and warnings are
+/// counted but not kept. An unknown name is one error, however often it is used: further places are
+/// counted in a note.
 class DiagnosticSink {
  public:
   static constexpr std::size_t kUsualLimit = 20;
@@ -94,7 +94,7 @@ class DiagnosticSink {
   DiagnosticBuilder error(DiagnosticCode code, SourceRange range, const Args&... args) {
     return add(code, range, {}, fmt::format(fmt::runtime(info(code).format), args...));
   }
-  /// For what has no place in a text: a missing file, a process. `subject` is usually a path.
+  /// For errors without a place in a text: a missing file, a process. `subject` is usually a path.
   template <typename... Args>
   DiagnosticBuilder error_about(DiagnosticCode code, std::string subject, const Args&... args) {
     return add(code, std::nullopt, std::move(subject),

@@ -13,7 +13,8 @@ namespace parallax::base {
 /// by number, errors before warnings.
 enum class DiagnosticCode : std::uint16_t {};
 
-/// Of "E5102", "W7002" or "CPL012"; those of plans come between E3999 and E4000.
+/// Code of an id such as "E5102", "W7002" or "CPL012". Plan ids take the numbers from 3900 on, so
+/// they come between the other E3xxx codes and E4000.
 constexpr DiagnosticCode code_of(std::string_view id) {
   const bool plan = id.front() == 'C';
   unsigned number = 0;

@@ -87,7 +87,7 @@ nlohmann::ordered_json place_json(const std::optional<SourceRange>& range,
 
 using Json = nlohmann::ordered_json;
 
-/// RFC 3986: what is neither unreserved nor a slash is percent-encoded.
+/// RFC 3986: characters that are neither unreserved nor a slash are percent-encoded.
 std::string encoded(std::string_view path) {
   std::string out;
   for (const char c : path) {
@@ -144,7 +144,7 @@ Json related_locations(const Diagnostic& d, const SourceFiles& files) {
   return out;
 }
 
-/// What identifies a result wherever its line has moved to.
+/// Text that identifies a result even after its line has moved.
 std::string identity(const Diagnostic& d, const SourceFiles& files) {
   std::string text = std::string(info(d.code).id) + '\n' + d.message + '\n';
   if (!d.range) return text + d.subject;

@@ -11,10 +11,11 @@ namespace parallax::base {
 
 struct DiagnosticStyle {
   bool color = false;
-  bool help = true;  // what to do, where no fix says it
+  bool help = true;  // advice, where there is no fix
 };
 
-/// What to do about it: its own advice, else that of the registry. A view of either.
+/// Advice on how to fix the problem: the diagnostic's own, else that of the registry. A view of
+/// either.
 std::string_view help_of(const Diagnostic& diagnostic);
 
 /// One diagnostic as text: `path:line:col-col: error[E2104]: text`, the source line with a caret,

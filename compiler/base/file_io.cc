@@ -17,7 +17,7 @@
 namespace parallax::base {
 namespace {
 
-/// A link to what a process has open, as /dev/stdout is one.
+/// Is the path a link to an open file of a process, such as /dev/stdout?
 bool leads_to_open_file(std::filesystem::path path) {
   constexpr int kMostLinks = 40;
   for (int links = 0; links < kMostLinks; ++links) {
@@ -125,7 +125,7 @@ Status write_pieces_atomically(const std::filesystem::path& path, const TextPiec
       (!S_ISREG(status.st_mode) || leads_to_open_file(path))) {
     return sink.error_about(codes::kNotARegularFile, path.string());
   }
-  // A name that nothing has: what stands there may be another's file, or a link to one.
+  // The name must be unused: an existing file may be another's, or a link to one.
   std::filesystem::path temporary;
   int opened = -1;
   for (int attempt = 0; opened < 0 && attempt < 100; ++attempt) {

@@ -15,8 +15,8 @@ namespace parallax::base {
 Result<std::string> read_file(const std::filesystem::path& path, DiagnosticSink& sink,
                               std::size_t limit = std::size_t{64} << 20U);
 
-/// Of a path that stands in a text, at `place`: is there a regular file, or a folder where
-/// `or_folder` says so, that can be read? Reports there what read_file would report.
+/// Checks a path that a text names at `place`: it must be a readable regular file. With `or_folder`
+/// a folder is accepted too. Reports at `place` the errors that read_file would report.
 Status check_file(const std::filesystem::path& path, const SourceRange& place, DiagnosticSink& sink,
                   bool or_folder = false);
 
@@ -39,7 +39,7 @@ Status write_file_atomically(const std::filesystem::path& path, std::string_view
 Status check_output(const std::filesystem::path& path, const SourceFiles& files,
                     DiagnosticSink& sink);
 
-/// write_file_atomically for what a command was asked to write, after check_output.
+/// Calls write_file_atomically for an output that a command was asked for, after check_output.
 Status write_output(const std::filesystem::path& path, std::string_view text,
                     const SourceFiles& files, DiagnosticSink& sink,
                     TextForm form = TextForm::kLines);

@@ -9,7 +9,7 @@ namespace parallax::base {
 /// The name without links followed, absolute and without dots.
 std::string absolute_name(const std::string& name);
 
-/// The folder that all of them lie in, by their absolute names; empty where there are none.
+/// The folder that contains all of the files, by their absolute names; empty if there are none.
 std::filesystem::path common_folder(const std::map<std::string, std::string>& texts_by_name);
 
 }  // namespace parallax::base

@@ -10,7 +10,8 @@ namespace parallax::base {
 inline constexpr std::uint64_t kFnvStart = 0xcbf29ce484222325U;
 inline constexpr std::uint64_t kFnvPrime = 0x100000001b3U;
 
-/// Of bytes. A text hashed in pieces, each from the hash of those before it, has one hash.
+/// Hash of bytes. A text hashed in pieces, each starting from the hash of those before it, has the
+/// hash of the whole.
 constexpr std::uint64_t fnv1a64(std::string_view bytes, std::uint64_t start = kFnvStart) {
   auto hash = start;
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * kFnvPrime;

@@ -13,21 +13,21 @@ extern template class nlohmann::basic_json<nlohmann::ordered_map>;
 
 namespace parallax::base {
 
-/// A document as text; on one line, or with so many blanks for each level. Texts may hold any bytes
-/// (names of files do): what is no UTF-8 becomes U+FFFD, where nlohmann would throw. Characters
-/// that steer a display are escaped (shown_text.h), so that the text can be shown as it is.
+/// A document as text, on one line or with `indent` blanks for each level. Texts may hold any bytes
+/// (file names do): invalid UTF-8 becomes U+FFFD, where nlohmann would throw. Characters that
+/// control a display are escaped (shown_text.h), so that the text can be shown as it is.
 std::string json_text(const nlohmann::json& json, int indent = -1);
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
 
-/// What `text` says; discarded (`is_discarded`) where it is no JSON.
+/// Parses `text`; the result is discarded (`is_discarded`) if it is not JSON.
 nlohmann::json parse_json(std::string_view text);
 nlohmann::ordered_json parse_ordered_json(std::string_view text);
 
 /// One string as JSON writes it, with its quotes.
 std::string json_quoted(std::string_view text);
 
-/// The value, if it is of just this type: nothing is converted but integers to `double`, nothing is
-/// taken for a number that does not fit.
+/// The value, if it has exactly this type. Only integers are converted, to `double`; a number that
+/// does not fit gives none.
 template <typename T, typename Json>
 std::optional<T> json_as(const Json& value) {
   bool fits = false;
@@ -48,7 +48,7 @@ std::optional<T> json_as(const Json& value) {
   return value.template get<T>();
 }
 
-/// The member of an object; null if there is none or `object` is none.
+/// The member of an object; null if it is absent or `object` is not an object.
 template <typename Json>
 const Json* json_member(const Json& object, const char* name) {
   const auto found = object.is_object() ? object.find(name) : object.end();

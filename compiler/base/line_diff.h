@@ -16,9 +16,9 @@ struct LineChange {
   friend bool operator==(const LineChange&, const LineChange&) = default;
 };
 
-/// What turns `a` into `b`, from the first line to the last; between two changes there is a common
-/// line. As few lines as possible are deleted and added, each change as far down as equal lines let
-/// it; texts that differ in more than some thousand lines are compared as one stretch.
+/// Changes that turn `a` into `b`, from the first line to the last; two changes are separated by a
+/// common line. As few lines as possible are deleted and added, each change as far down as equal
+/// lines let it; texts that differ in more than some thousand lines are compared as one stretch.
 ///
 /// Myers, "An O(ND) Difference Algorithm and Its Variations" (1986), section 4: time O((N + M) D)
 /// and space O(D^2) for D deletions and additions.

@@ -23,7 +23,7 @@ bool begins_with(const fs::path& real, const fs::path& folder) {
          folder.end();
 }
 
-/// The home folder of whoever runs the program, by the environment and by the system.
+/// The home folder of the user, by the environment and by the system.
 std::vector<fs::path> own_homes() {
   std::vector<fs::path> homes;
   if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') {
@@ -64,7 +64,7 @@ std::optional<fs::path> marked_root(fs::path real, const std::vector<fs::path>& 
 
 bool is_marked_root(const fs::path& folder) {
   struct ::stat status {};
-  // Whoever else can write to a folder could plant a marker there.
+  // Other users who can write to a folder could plant a marker there.
   if (::stat(folder.empty() ? "." : folder.c_str(), &status) != 0) return false;
   if ((status.st_mode & S_IWOTH) != 0) return false;
   std::error_code error;
@@ -73,7 +73,8 @@ bool is_marked_root(const fs::path& folder) {
 
 namespace {
 
-/// A link that leads to nothing, as far as the path exists; what stands behind it goes to `rest`.
+/// A link whose target does not exist, in the existing part of the path; the part after it goes to
+/// `rest`.
 std::optional<fs::path> dangling_link(const fs::path& path, fs::path& rest) {
   std::error_code error;
   std::optional<fs::path> link;

@@ -21,7 +21,7 @@ class PathGate {
   explicit PathGate(bool allow_outside = false, SourceFiles* files = nullptr)
       : is_open_(allow_outside), files_(files) {}
 
-  /// Admits what the file may name.
+  /// Admits the paths that the file may name.
   void admit_beside(const std::filesystem::path& file) { admit_from(file.parent_path()); }
   /// The same for texts in `folder`.
   void admit_from(const std::filesystem::path& folder);

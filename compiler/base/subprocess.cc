@@ -22,15 +22,15 @@ namespace {
 
 constexpr int kPollMs = 20;  // how late `signal_when` may be asked
 
-/// What the child needs to become the program; made before the fork, as only calls that are safe in
-/// a signal handler may follow it.
+/// Data that the child needs to become the program. Prepared before the fork, since only
+/// async-signal-safe calls may follow it.
 struct ChildPlan {
   std::vector<char*> arguments;
   const char* program;
   const SpawnOptions& options;
   int report;
   pid_t parent;
-  sigset_t signals;  // that are held back in the program
+  sigset_t signals;  // blocked in the child when the program starts
 };
 
 /// Every other descriptor is closed by the exec.
@@ -40,7 +40,7 @@ void close_on_exec_from(int first) {
   for (int fd = first; fd < limit; ++fd) ::fcntl(fd, F_SETFD, FD_CLOEXEC);
 }
 
-/// What this program handles is its own affair: its handlers must not run in the child.
+/// Resets signal handlers to the default in the child, where this program's handlers must not run.
 void default_handlers(bool also_ignored) {
   for (int number = 1; number < NSIG; ++number) {
     struct sigaction action {};
@@ -99,7 +99,8 @@ pid_t fork_child(ChildPlan& plan) {
   return pid;
 }
 
-/// What the child says of its start: 0 once the exec has closed the pipe's other end.
+/// Error number that the child reports from its start; 0 once the exec has closed the pipe's other
+/// end.
 int start_failure(int report) {
   int why = 0;
   ssize_t count = 0;
@@ -109,7 +110,7 @@ int start_failure(int report) {
   return count == sizeof why ? why : 0;
 }
 
-/// Reads what is there; closes the descriptor at the end. What is beyond `limit` is dropped.
+/// Reads the available text; closes the descriptor at the end. Text beyond `limit` is dropped.
 void drain(Descriptor& from, std::string& text, std::size_t limit) {
   std::array<char, 1 << 16> buffer;
   const auto count = ::read(from.get(), buffer.data(), buffer.size());

@@ -30,14 +30,14 @@ struct Spawned {
   int error = 0;  // an `errno`, if there is no process
 };
 
-/// Starts a program with its arguments, looked up in PATH, no shell; whoever calls waits for its
-/// end. Other descriptors of ours are closed in it. Safe from several threads.
+/// Starts a program with its arguments, looked up in PATH, without a shell; the caller waits for
+/// its end. The program inherits no other descriptors. Safe from several threads.
 Spawned spawn(const std::vector<std::string>& command, const SpawnOptions& options);
 
 /// A command for people to read: words with blanks stand in quotes.
 std::string command_text(const std::vector<std::string>& command);
 
-/// Of a status that wait() has given: the exit code, or 128 + signal.
+/// Exit code in a status that wait() returned: the child's own, or 128 + signal.
 int exit_code(int status);
 
 /// Waits for the end of a child: its exit code, or 128 + signal.
@@ -61,7 +61,7 @@ struct Captured {
   std::string err;
 };
 
-/// Runs a program to its end and keeps what it writes.
+/// Runs a program to its end and keeps its output.
 Captured capture(const std::vector<std::string>& command, const CaptureOptions& options = {});
 
 }  // namespace parallax::base

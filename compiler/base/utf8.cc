@@ -8,7 +8,7 @@ namespace parallax::base {
 namespace {
 
 /// The shape of the code points that begin with one byte. The second byte has bounds of its own:
-/// they exclude overlong forms, surrogates and what is beyond U+10FFFF.
+/// they exclude overlong forms, surrogates and values beyond U+10FFFF.
 struct Shape {
   std::size_t length = 0;  // 0: no code point begins with this byte
   unsigned char second_low = 0x80, second_high = 0xBF;

@@ -11,7 +11,7 @@
 
 namespace parallax::compiler {
 
-/// What a built-in can see; the functions of it keep their bodies short.
+/// Arguments and context of a call to a built-in; its functions keep their bodies short.
 struct BuiltinCall {
   std::span<const ValueId> args;
   const FailureClasses& classes;
@@ -41,7 +41,8 @@ inline BuiltinFailure not_a_number(const BuiltinCall& c, std::size_t index) {
   return failure;
 }
 
-/// Of built-ins that say something about a value but leave it as it is.
+/// Returns the first argument; for built-ins that assert something about a value but leave it as it
+/// is.
 inline BuiltinResult first_argument(const BuiltinCall& c) { return c.args[0]; }
 
 using BuiltinFunction = BuiltinResult (*)(const BuiltinCall&);

@@ -1,4 +1,5 @@
-// Functions on designators. A designator is its own solution: what it refers to is the model's.
+// Functions on designators. A designator is its own solution: the model determines what it refers
+// to.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -40,7 +41,7 @@ BuiltinResult next_solution(const BuiltinCall& c) {
   return next;
 }
 
-/// What a location's pose is, where it says so; everything else is its own reference.
+/// Resolves a location to its pose, if it has one; every other value is its own reference.
 BuiltinResult reference(const BuiltinCall& c) {
   auto id = c.links.current(c.args[0]);
   for (;;) {
@@ -201,7 +202,7 @@ BuiltinResult is_any(const BuiltinCall& c) {
 
 // --- solutions of `prolog` ----------------------------------------------------------------------
 
-/// (var-value '?x bindings): what it is bound to; itself if it is free.
+/// (var-value '?x bindings): the value that the variable is bound to; itself if it is free.
 BuiltinResult var_value(const BuiltinCall& c) {
   if (c.values.kind(c.args[0]) != ValueKind::kSymbol) return c.wrong(0, "a variable");
   const auto bindings = c.values.elements(c.args[1]);

@@ -105,8 +105,8 @@ std::optional<ValueId> property_value(const ValueStore& values, ValueId designat
 
 ValueId resolve_links(const DesignatorLinks& links, ValueStore& values, ValueId designator) {
   if (links.chains.empty()) return designator;
-  // As deep as designators stand in designators. One that is equated with what stands in it is
-  // taken once.
+  // Recursion depth: the nesting of designators. A designator that is equated with a part of itself
+  // is resolved once.
   const auto resolve = [&](const auto& self, ValueId id, int depth) -> ValueId {
     if (depth > 100) return id;
     auto value = values[links.current(id)];

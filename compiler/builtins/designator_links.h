@@ -44,7 +44,7 @@ std::optional<bool> has_designator_type(const Value& value, std::string_view typ
 ValueId property_list(ValueStore& values, ValueId designator);
 /// The keys that such a list gives; none if it is not one.
 std::optional<DesignatorKeys> keys_of_list(const ValueStore& values, ValueId list);
-/// The value of a key; what the model returned is its own name.
+/// The value of a key; for an object that the model returned, its own name.
 std::optional<ValueId> property_value(const ValueStore& values, ValueId designator,
                                       std::string_view key);
 /// The designator with the current one in the place of each that is in it.

@@ -38,7 +38,7 @@ BuiltinResult unstamped(const BuiltinCall& c) {
   return make_placed(c, kPose, motion_of(value), {value.pose.frame, "", std::nullopt});
 }
 
-/// What is stamped, with its frame.
+/// Frame of a stamped pose or transform, or why the argument is not one.
 Argument<PoseFrame> stamped_argument(const BuiltinCall& c, std::size_t index, ValueKind kind) {
   const auto& value = c.values[c.args[index]];
   const auto frame = frame_of(value);
@@ -203,10 +203,11 @@ BuiltinResult poses_equal(const BuiltinCall& c) {
   return c.values.boolean(near && angle_rad(product(back, other.turn)) <= std::get<0>(angle));
 }
 
-/// What only the robot knows: a term of the call.
+/// Term for a value that only the robot knows: the function of the call and its arguments.
 BuiltinResult from_robot(const BuiltinCall& c) { return unknown_value(c.name, c.args, c.values); }
 
-/// (ensure-pose-in-frame pose frame): a pose that is in another frame takes the robot to tell.
+/// (ensure-pose-in-frame pose frame). Only the robot can transform a stamped pose that is in
+/// another frame, so the result is then a term of the call.
 BuiltinResult ensure_in_frame(const BuiltinCall& c) {
   const auto value = c.values[c.args[0]];
   if (c.values.is_nil(c.args[0])) return c.args[0];
@@ -219,7 +220,7 @@ BuiltinResult ensure_in_frame(const BuiltinCall& c) {
                      {std::get<0>(frame), "", c.values.number(Number(0).as_float())});
 }
 
-/// (ensure-pose-stamped pose frame stamp): stamps what is not.
+/// (ensure-pose-stamped pose frame stamp): stamps a pose or transform that has no stamp.
 BuiltinResult ensure_stamped(const BuiltinCall& c) {
   const auto value = c.values[c.args[0]];
   auto frame = frame_of(value);

@@ -103,7 +103,7 @@ BuiltinResult different_numbers(const BuiltinCall& c) {
   return c.values.boolean(holds);
 }
 
-/// (%larger so-far number): what is nil so far does not count.
+/// (%larger so-far number): nil so far does not count.
 template <int kSign>
 BuiltinResult better(const BuiltinCall& c) {
   if (c.number(1) == nullptr) return not_a_number(c, 1);

@@ -1,4 +1,4 @@
-// What patterns, parameter lists and macros are compiled into.
+// Built-ins that patterns, parameter lists and macros are compiled into.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ std::optional<ValueId> behind(const BuiltinCall& c, const std::vector<ValueId>& 
   return std::nullopt;
 }
 
-/// (%argument list :key): what follows it, or the mark that there is none.
+/// (%argument list :key): the value after the key, or the mark that there is none.
 BuiltinResult argument(const BuiltinCall& c) {
   const auto items = c.values.elements(c.args[0]);
   if (!items) return c.wrong(0, "a list");

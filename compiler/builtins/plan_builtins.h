@@ -35,7 +35,7 @@ struct ModelEquality {
 enum class BuiltinError : std::uint8_t { kValue, kModelComparison, kModelList, kRaise };
 struct BuiltinFailure {
   BuiltinError kind = BuiltinError::kValue;
-  std::string text;  // what is wrong with the arguments
+  std::string text;  // the error in the arguments
 };
 using BuiltinResult = std::variant<ValueId, ModelEquality, BuiltinFailure>;
 

@@ -125,7 +125,7 @@ ValueId ValueStore::intern(Value value) {
   return id;
 }
 
-/// What the value and its parts refer to.
+/// Collects the registers, identities and function links that the value and its parts refer to.
 void ValueStore::note_parts(Value& value) const {
   const auto include = [&](ValueId part) {
     const auto& from = values_[part];

@@ -36,7 +36,7 @@ enum class ValueKind : std::uint8_t {
   kNotGiven,  // stands for an argument whose default the function computes
   kFurther,   // the rest of a list of solutions, of which only the first is known
   kFunction,
-  kValues,  // what `values` gave, not one of them: head is the list of all
+  kValues,  // the values of a `values` form, not one of them: head is the list of all
 };
 
 enum class DesignatorKind : std::uint8_t { kMotion, kAction, kObject, kLocation, kAllObjects };
@@ -130,8 +130,8 @@ class ValueStore {
   std::optional<std::vector<ValueId>> elements(ValueId id) const;
   /// The value of one key of a designator.
   std::optional<ValueId> key(ValueId designator, std::string_view name) const;
-  /// More than kMaxPlanValues were made, or more than kMaxPlanText in them; lists are not built any
-  /// more and whoever runs the plan must stop.
+  /// More than kMaxPlanValues were made, or more than kMaxPlanText in them. Lists are not built any
+  /// more, and the plan's execution must stop.
   bool full() const { return values_.size() > kMaxPlanValues || too_much_text(); }
   bool too_much_text() const { return text_size_ > kMaxPlanText; }
   /// The number of list elements that `elements` has walked over: work that steps do not show.

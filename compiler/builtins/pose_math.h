@@ -4,18 +4,18 @@
 
 namespace parallax::compiler {
 
-/// What plans do with vectors, rotations and rigid motions. Results may be infinite; whoever makes
-/// values of them looks.
+/// Vectors, rotations and rigid motions as plans use them. Results may be infinite; callers that
+/// make values of them must check.
 struct Vector3 {
   double x = 0.0, y = 0.0, z = 0.0;
 };
 struct Quaternion {
   double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
 };
-/// Turns, then moves.
+/// A rotation followed by a translation.
 struct RigidMotion {
   Vector3 at;
-  Quaternion turn;  // of length one
+  Quaternion turn;  // unit quaternion
 };
 
 /// Below this length a quaternion or an axis has no direction.
@@ -30,20 +30,21 @@ double length(const Vector3& a);
 Quaternion product(const Quaternion& a, const Quaternion& b);
 double length(const Quaternion& q);
 double dot(const Quaternion& a, const Quaternion& b);
-/// None without a direction.
+/// The quaternion at unit length; none if it has no direction (kNoDirection) or is not finite. The
+/// same for the inverse.
 std::optional<Quaternion> unit(const Quaternion& q);
 std::optional<Quaternion> inverse(const Quaternion& q);
-/// By a quaternion of length one.
+/// `v` rotated by a unit quaternion.
 Vector3 rotated(const Quaternion& q, const Vector3& v);
 std::optional<Quaternion> around(const Vector3& axis, double angle_rad);
-/// About x, then y, then z, which stay where they are.
+/// Rotation about the fixed axes x, then y, then z.
 Quaternion from_euler(double x_rad, double y_rad, double z_rad);
-/// How far a quaternion of length one turns, in [0, 2 pi].
+/// Rotation angle of a unit quaternion, in [0, 2 pi].
 double angle_rad(const Quaternion& q);
-/// In [-pi, pi).
+/// The angle normalized to [-pi, pi).
 double normalized_angle_rad(double angle_rad);
 
-/// `b` first.
+/// The motion `b` followed by `a`.
 RigidMotion composed(const RigidMotion& a, const RigidMotion& b);
 RigidMotion inverse(const RigidMotion& a);
 

@@ -40,7 +40,7 @@ BuiltinResult w_coordinate(const BuiltinCall& c) {
   return make_number(c, std::get<0>(q).w);
 }
 
-/// What is stamped, or why the argument is not.
+/// Frame of a stamped argument, or why the argument is not stamped.
 Argument<PoseFrame> stamped(const BuiltinCall& c) {
   const auto& value = c.values[c.args[0]];
   const bool placed = is_pose(value) || is_transform(value) || value.kind == ValueKind::kVector;

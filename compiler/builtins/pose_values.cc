@@ -121,7 +121,7 @@ Argument<KeyArguments> key_arguments(const BuiltinCall& c, std::size_t from,
     if (i + 1 == c.args.size()) {
       return BuiltinFailure{BuiltinError::kValue, fmt::format("no value for `:{}`", key.text)};
     }
-    // Of two with one name Lisp takes the first.
+    // If a key is given twice, Lisp takes the first.
     if (!c.values.is_nil(c.args[i + 1])) out.emplace_back(key.text, i + 1);
   }
   return out;

@@ -14,9 +14,9 @@
 namespace parallax::compiler {
 
 // Vectors, rotations, poses and transforms as values of a plan: made, taken apart, checked. The
-// numbers stand in Value::pose; of what is stamped Value::head is the stamp, of a transform
-// Value::text is the child frame. What is not stamped is taken to be in the frame `map`, where the
-// regions are; what has no frame that the plan says has an empty one.
+// numbers stand in Value::pose. For stamped values Value::head is the stamp, for transforms
+// Value::text is the child frame. Values without a stamp are taken to be in the frame `map`, where
+// the regions are; values without a frame named by the plan have an empty one.
 
 Vector3 vector_of(const Value& value);
 Quaternion rotation_of(const Value& value);
@@ -38,7 +38,7 @@ BuiltinResult make_placed(const BuiltinCall& c, ValueKind kind, const RigidMotio
                           const PoseFrame& frame);
 BuiltinResult make_number(const BuiltinCall& c, double value);
 
-/// An argument of that kind, or what is wrong with it.
+/// An argument of that kind, or the error in it.
 template <typename T>
 using Argument = std::variant<T, BuiltinFailure>;
 Argument<Vector3> vector_argument(const BuiltinCall& c, std::size_t index);

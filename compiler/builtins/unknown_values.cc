@@ -108,7 +108,7 @@ std::optional<BuiltinResult> with_unknown(std::string_view builtin,
   const auto is_unknown = [&](ValueId argument) {
     return values.kind(argument) == ValueKind::kUnknown;
   };
-  // Asked at every call: what is known costs no more than this.
+  // Checked at every call: known arguments cost no more than this.
   if (std::none_of(arguments.begin(), arguments.end(), is_unknown)) return std::nullopt;
   const bool poses = computes_poses(builtin);
   const auto unknown = std::find_if(arguments.begin(), arguments.end(), [&](ValueId argument) {

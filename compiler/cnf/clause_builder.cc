@@ -83,7 +83,7 @@ OpenLiteral ClauseBuilder::use(FormulaId id, bool moves) {
   if (formulas_.kind(id) == FormulaNodeKind::kAtom) {
     return {false, id.negated(), static_cast<std::uint32_t>(formulas_.variable(id))};
   }
-  // What mentions no timepoint is the same for all of them.
+  // A formula that mentions no timepoint has one auxiliary for all timepoints.
   const bool copies = moves && timed_[id.node()];
   auto& known = known_[id.node()];
   if (known.auxiliary[copies] == 0) {

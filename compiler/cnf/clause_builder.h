@@ -74,10 +74,12 @@ class ClauseBuilder {
 std::string clause_lines(const GroundModel& model, const ClauseBuilder& clauses,
                          const base::SourceFiles* files);
 
-/// What has which place: of the slots, then of the fixed variables. Unused places are left out.
+/// Kind and name of each place, first of the slots, then of the fixed variables. Unused places are
+/// left out.
 std::string place_lines(const CompiledModel& model);
 
-/// The clauses as numbers, a heading for each section; of one that is repeated the first block.
+/// The clauses as numbers, with a heading for each section; only the first block of a repeated
+/// section.
 std::string numbered_lines(const CompiledModel& model, const base::SourceFiles* files);
 
 }  // namespace parallax::compiler

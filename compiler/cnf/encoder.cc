@@ -269,7 +269,7 @@ class Encoder {
     for (const auto& clause : clauses) {
       auto& literals = numbered.emplace_back();
       for (const auto& open : clause.literals) literals.push_back(number(open));
-      // What a definition defines stays in front.
+      // The auxiliary that a definition defines stays in front.
       std::sort(literals.begin() + (clause.is_definition ? 1 : 0), literals.end(),
                 [](Literal a, Literal b) { return a.var() < b.var(); });
     }

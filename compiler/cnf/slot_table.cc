@@ -28,7 +28,7 @@ std::uint32_t grown(std::uint32_t capacity) {
 std::optional<std::vector<std::uint32_t>> places(const std::vector<std::uint32_t>& order,
                                                  std::span<const std::uint64_t> hashes,
                                                  std::uint32_t capacity) {
-  // Homes leave a little room at the end for what is pushed along.
+  // Homes leave a little room at the end for entries that are pushed along.
   const std::uint64_t homes = capacity - capacity / 16;
   std::vector<std::uint32_t> result(hashes.size());
   std::uint64_t next = 0;

@@ -6,8 +6,8 @@
 
 namespace parallax::compiler {
 
-/// Places for keys, chosen by hash so that adding or dropping a key moves few of the others: what a
-/// model edit changes in the numbering of an artifact stays small. A linear-probing table whose
+/// Places for keys, chosen by hash so that adding or dropping a key moves few of the others: an
+/// edit of the model changes little in the numbering of an artifact. A linear-probing table whose
 /// entries are kept in order of their hashes; the layout depends on the set of keys only.
 struct SlotLayout {
   std::vector<std::uint32_t> place;  // by key; below `capacity`

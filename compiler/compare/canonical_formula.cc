@@ -166,8 +166,8 @@ class CanonicalWriter {
     return std::move(texts[0]);
   }
 
-  /// Variables are told apart by the formula in which they alone are marked; what is left is told
-  /// apart by the order of the text.
+  /// Variables are told apart by the formula in which they alone are marked; remaining ties are
+  /// broken by the order of the text.
   void sort_operands() {
     std::vector<std::string> marked(sorts_.size());
     for (std::size_t v = 0; v < sorts_.size(); ++v) {

@@ -99,7 +99,7 @@ class Matcher {
     for (const auto i : out_.removed) {
       const auto of_removed = words(old_[i]);
       for (const auto j : out_.added) {
-        // Declarations are told apart by what they declare.
+        // Declarations are distinguished by the thing that they declare.
         if (old_[i].kind != FactKind::kAxiom || new_[j].kind != FactKind::kAxiom) continue;
         const auto alike = similarity(of_removed, of_added[j]);
         if (alike > 500) pairs.emplace_back(1000 - alike, i, j);

@@ -29,16 +29,16 @@ struct Fact {
   FactPlace place;
 };
 
-/// What two lists of facts have not in common. Indices into the lists, in their order.
+/// Difference of two lists of facts. Indices into the lists, in their order.
 struct FactDifference {
-  std::vector<std::size_t> removed;                          // of the old list
-  std::vector<std::size_t> added;                            // of the new list
+  std::vector<std::size_t> removed;                          // indices into the old list
+  std::vector<std::size_t> added;                            // indices into the new list
   std::vector<std::pair<std::size_t, std::size_t>> changed;  // old, new
   bool empty() const { return removed.empty() && added.empty() && changed.empty(); }
 };
 
-/// Two texts that differ, for people: what they begin and end with in common is left out (`...`)
-/// but for some words, where they are too long to be shown whole.
+/// Two different texts, for people. Where they are too long to be shown whole, their common
+/// beginning and end are left out (`...`) but for some words.
 std::pair<std::string, std::string> changed_parts(const std::string& old_text,
                                                   const std::string& new_text);
 

@@ -11,19 +11,19 @@
 
 namespace parallax::compiler {
 
-/// What the statements of one text say: a fact for every sort, constant, symbol, option and so on,
-/// and one for every formula. A `load` is a fact of its own. In the order of the text.
+/// Facts of one text: one for every sort, constant, symbol, option and so on, and one for every
+/// formula. A `load` is a fact of its own. In the order of the text.
 std::vector<Fact> text_facts(const Ast& ast, const base::SourceFiles& files);
 
-/// The same for a whole model: the facts of all its files. Of the built-in foundations there is one
-/// fact each, their name.
+/// The same for a whole model: the facts of all its files. Each built-in foundation is a single
+/// fact, its name.
 std::vector<Fact> model_facts(const ModelAst& model, const base::SourceFiles& files);
 
 /// The facts one a line, declarations first, each group sorted by bytes, no line twice.
 std::string canonical_text(const std::vector<Fact>& facts);
 
-/// What a compiled model says, without its numbering: options, horizon, ground fluents and events,
-/// and the axioms with the number of clauses that came of each. Places are those of the texts.
+/// Facts of a compiled model, without its numbering: options, horizon, ground fluents and events,
+/// and the axioms with the number of clauses made from each. Places are those of the texts.
 std::vector<Fact> artifact_facts(const CompiledModel& model);
 
 }  // namespace parallax::compiler

@@ -94,7 +94,7 @@ class EditFinder {
 
  private:
   using MaybeDatum = std::optional<DatumId>;
-  /// A pair to be compared, or what has been found out about it already.
+  /// A pair to be compared, or the edit found for it already.
   struct Pair {
     MaybeDatum x, y;
     std::optional<DatumEdit> found;
@@ -157,7 +157,7 @@ class EditFinder {
     return std::nullopt;
   }
 
-  /// What is around those children of a place, up to the first place.
+  /// Text around those children of a place, up to the first place.
   template <typename Places>
   static std::string around(const LispData& data, const Places& places, std::size_t at,
                             std::size_t position, std::size_t length) {

@@ -14,9 +14,9 @@ namespace parallax::compiler {
 /// later definition replaces an earlier one.
 std::vector<Fact> plan_facts(const LispText& plan, const base::SourceFiles& files);
 
-/// Takes the fact of the order out of the facts of two revisions where the forms that both plans
-/// have stand in the same order: that others were added or removed is said by them. A name that
-/// stands twice keeps it.
+/// Drops the fact of the order from both revisions where the forms that both plans have stand in
+/// the same order; added and removed forms are facts of their own. A name that occurs twice keeps
+/// it.
 void drop_equal_order(std::vector<Fact>& old_facts, std::vector<Fact>& new_facts);
 
 /// A fact for every entry of a binding table, without comments and layout.
@@ -25,12 +25,12 @@ std::vector<Fact> binding_facts(base::FileId file, const base::SourceFiles& file
 /// The forms in their order, in a layout of our own of at most 100 columns where the data allow.
 std::string canonical_plan(const LispText& plan);
 
-/// A piece of a form that the other one has not, or both, where one stands for the other.
+/// A piece that only one of two forms has, or two pieces of which one replaces the other.
 struct DatumEdit {
   std::string removed, added;  // on one line; empty: there is none
   FactPlace old_place, new_place;
-  /// What stays the same inside of what was put around it, or taken away from around it: there
-  /// stands `...` in its place. Empty if the edit is no such wrap.
+  /// Text that was put around the unchanged part, or taken away from around it; `...` stands for
+  /// that part. Empty if the edit is not such a wrap.
   std::string around;
 };
 

@@ -90,7 +90,7 @@ enum class Truth : std::uint8_t { kFalse, kTrue, kUnknown };
 Truth evaluate(const FormulaStore& store, FormulaId formula,
                const std::function<Truth(std::int32_t)>& atom);
 
-/// What became of the nodes already rewritten, by node, sign left out.
+/// Rewritten formula of each node done so far, by node, sign left out.
 using RewriteMemo = std::unordered_map<std::uint32_t, FormulaId>;
 
 /// `formula` with every atom replaced by what `atom` says of its variable. Linear in the formula's

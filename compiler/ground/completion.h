@@ -22,7 +22,7 @@ namespace parallax::compiler {
 /// In the 2005 reasoner's meaning the formulas are the clauses that it makes of them.
 class CompletionWriter {
  public:
-  /// `lint`: what has itself for a reason is looked for as well.
+  /// `lint`: atoms that are reasons of themselves are sought as well.
   CompletionWriter(GroundModel& model, Meaning meaning, bool lint);
   /// Notes what an axiom, with its label (empty without one), says: a formula that holds once, or,
   /// with a width, at every timepoint as GroundModel::require_always has it. Call for every axiom.

@@ -22,8 +22,8 @@ struct Conjunct {
   bool step = false;
 };
 
-/// What must hold for the formula to be true (false if `negated`): the comparisons and positive
-/// atoms of its conjunction. Everything else is left to evaluation.
+/// Necessary conditions for the formula to be true (false if `negated`): the comparisons and
+/// positive atoms of its conjunction. Everything else is left to evaluation.
 std::vector<Conjunct> conjuncts_of(const TypedModel& model, TypedFormulaId formula, bool negated);
 
 /// Variables of a term, in order of occurrence, with repetitions.

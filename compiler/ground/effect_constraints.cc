@@ -18,8 +18,8 @@ EffectConstraints::EffectConstraints(GroundModel& model, FormulaGrounder& ground
       possible_(possible),
       sink_(sink) {}
 
-/// With bounds, what can be an effect is found in rounds: each joins the conditions with the
-/// effects known to be possible before.
+/// With bounds, possible effects are found in rounds: each joins the conditions with the effects
+/// known to be possible before.
 void EffectConstraints::ground(const std::vector<const EffectAxiom*>& axioms) {
   grounder_.use_effect_atoms(
       [this](EffectKind kind, std::uint32_t event, std::uint32_t fluent, Timepoint t) {

@@ -42,8 +42,8 @@ class EffectGrounder {
 /// axioms mention only the events that can touch it.
 void assert_inertia(GroundModel& model, const EffectRows& rows, const GroundOptions& options);
 
-/// Asserts DEC3 and DEC4: what a trajectory axiom says of the time between the event that starts
-/// its fluent and the first one that stops it. Quadratic in the horizon.
+/// Asserts DEC3 and DEC4: the trajectory axioms, between the event that starts their fluent and the
+/// first one that stops it. Quadratic in the horizon.
 void assert_trajectories(GroundModel& model, const EffectRows& rows, FormulaGrounder& grounder,
                          base::DiagnosticSink& sink);
 

@@ -11,9 +11,9 @@
 namespace parallax::compiler {
 namespace {
 
-/// By event, when it makes a bit true (or false).
+/// By event: the condition under which it makes a bit true (or false).
 using Triggers = std::map<std::uint32_t, FormulaId>;
-/// What makes a bit that is false at 0 true, and what makes it false.
+/// Triggers that make a bit true which is false at 0, and triggers that make it false.
 using Behaviour = std::pair<Triggers, Triggers>;
 
 class EqualBits {
@@ -28,7 +28,7 @@ class EqualBits {
   }
 
   void run() {
-    // HoldsAt first: it is what the others are said to be equal to.
+    // HoldsAt first, so that other bits are declared equal to a HoldsAt atom.
     for (std::uint32_t f = 0; f < rows_of_.size(); ++f) {
       if (!rows_of_[f].empty() && !model_.can_be_released(f)) add_holds(f);
     }

@@ -100,7 +100,7 @@ std::optional<FormulaId> FormulaGrounder::ground(TypedFormulaId root) {
   return result;
 }
 
-/// Notes what a part or an instance has given. True: the rest cannot change the outcome.
+/// Notes the result of a part or an instance. True: the rest cannot change the outcome.
 bool FormulaGrounder::take_part(Frame& frame, std::optional<FormulaId> part) const {
   if (!part) {
     frame.discarded = true;
@@ -197,8 +197,8 @@ std::optional<FormulaId> FormulaGrounder::atom(const TypedFormula& formula) {
   return model_->predicate(model_->terms().apply(formula.predicate, arguments));
 }
 
-/// Before the last timepoint only. How the timepoint is written, as a number or as a variable,
-/// makes no difference: a longer horizon must not change what is said of a shorter one.
+/// Before the last timepoint only. Whether the timepoint is written as a number or as a variable
+/// makes no difference: a longer horizon must not change the meaning at earlier timepoints.
 std::optional<FormulaId> FormulaGrounder::occurrence(GroundTermId event, Timepoint t) const {
   const auto number = model_->event_number(event);
   if (!number) return std::nullopt;
@@ -226,8 +226,8 @@ std::optional<FormulaId> FormulaGrounder::effect_atom(EffectKind kind,
   return rows_->holds(kind, *event, *fluent, t, *model_);
 }
 
-/// With encoding 2 the 2005 reasoner puts in the place of an effect atom what the effect brings:
-/// if the event happens, the fluent holds next (no longer holds, is released).
+/// With encoding 2 the 2005 reasoner replaces an effect atom by its result: if the event happens,
+/// the fluent holds next (no longer holds, is released).
 FormulaId FormulaGrounder::effect_in_place(EffectKind kind, std::uint32_t event,
                                            std::uint32_t fluent, Timepoint t) const {
   auto& formulas = model_->formulas();
@@ -264,8 +264,8 @@ void FormulaGrounder::begin_instances(Frame& frame, TypedFormulaId id) {
   frame.exhausted = failed() || !next_instance(frame);
 }
 
-/// What is too large is refused before it is begun: a bare product by its size, a join whose
-/// expected size is beyond all reason.
+/// Refuses an instantiation that is too large before it begins: a bare product by its size, a join
+/// if its expected size exceeds the limit a thousandfold.
 bool FormulaGrounder::runnable(const InstancePlan& plan, const std::vector<VariableId>& open) {
   constexpr double kBeyondReason = 1000.0;
   const auto limit = static_cast<double>(terms_.options().max_instances);
@@ -294,7 +294,7 @@ std::vector<TypedFormulaId> FormulaGrounder::outer_atoms(const TypedFormula& roo
     const auto& formula = typed_->formulas[todo.back()];
     const auto id = todo.back();
     todo.pop_back();
-    // What an inner quantifier makes of its instances is its own affair.
+    // Atoms inside an inner quantifier are left to that quantifier.
     if (is_quantifier(formula.kind)) continue;
     todo.insert(todo.end(), formula.children.begin(), formula.children.end());
     const auto& core = typed_->core;

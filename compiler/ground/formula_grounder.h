@@ -31,8 +31,8 @@ class FormulaGrounder {
   /// From now on Initiates, Terminates and Releases in formulas mean these rows; before, they name
   /// nothing. `rows` outlives the grounder.
   void use_effects(EffectRows& rows) { rows_ = &rows; }
-  /// Is what is grounded next a whole axiom? To the 2005 reasoner Happens at the last timepoint is
-  /// an atom where no quantifier stands around it.
+  /// Is the formula grounded next a whole axiom? To the 2005 reasoner Happens at the last timepoint
+  /// is an atom where no quantifier stands around it.
   void read_whole_axiom(bool whole) { whole_axiom_ = whole; }
   /// Do events at the last timepoint get an atom of their own, `happens_last`? Otherwise they do
   /// not exist.

@@ -107,7 +107,7 @@ class GroundModel {
   }
   std::size_t atom_count() const { return atoms_.size(); }
   std::string atom_name(const GroundAtom& atom) const;
-  /// What the compiled model says of it.
+  /// The atom as the compiled model describes it.
   Atom described(const GroundAtom& atom) const;
   /// The formula with every timepoint moved by `steps`.
   FormulaId shifted(FormulaId formula, Timepoint steps);
@@ -121,13 +121,13 @@ class GroundModel {
 
   std::uint32_t add_origin(base::SourceRange source, OriginKind kind);
   void require(FormulaId formula, std::uint32_t origin);
-  /// Says the formula, whose earliest timepoint is 0, of every timepoint 0 .. horizon - width.
+  /// Requires the formula, whose earliest timepoint is 0, at every timepoint 0 .. horizon - width.
   void require_always(FormulaId formula, std::uint32_t origin, Timepoint width);
 
   /// The horizon from which on every atom of the formula exists.
   Timepoint needed_horizon_of(FormulaId formula) const;
 
-  /// Notes that the grounder looked at so many instances of a text.
+  /// Notes that the grounder looked at this many instances of a text.
   void charge(base::SourceRange source, std::int64_t instances) {
     charges_.emplace_back(source, instances);
   }

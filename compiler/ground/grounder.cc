@@ -26,9 +26,9 @@ namespace parallax::compiler {
 
 namespace {
 
-/// Grounds in the order in which knowledge grows: what does not depend on time, what is said of
+/// Grounds in the order in which knowledge grows: axioms that do not depend on time, axioms about
 /// single timepoints, the narrative with the states it leads through, and then the rest, joined
-/// over what is still possible. The passes stand in the table below.
+/// over the atoms that are still possible. The passes stand in the table below.
 class Grounder {
  public:
   Grounder(GroundModel& model, const GroundOptions& options, base::DiagnosticSink& sink)
@@ -288,7 +288,7 @@ class Grounder {
     return false;
   }
 
-  /// False in itself, or only with what is already known of the model?
+  /// False in itself, or only with the facts already known about the model?
   bool is_false_whatever_happens(const Axiom& axiom) {
     if (grounder_.possible() == nullptr) return true;
     const auto size = expansion_size(typed_, model_.universe(), axiom.formula);

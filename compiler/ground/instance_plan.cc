@@ -9,7 +9,7 @@ namespace {
 
 using StepKind = InstancePlan::StepKind;
 
-/// What one equation in ten keeps where nothing better is known.
+/// Share of the instances that a comparison is assumed to keep, where nothing better is known.
 constexpr double kFilterShare = 0.3;
 
 class Planner {

@@ -124,7 +124,7 @@ bool InstanceSearch::may_be_true(const TypedFormula& atom) {
     return is_holds ? possible_->may_hold(*number, t) : possible_->may_happen(*number, t);
   }
   const auto* table = possible_->predicates(atom.predicate);
-  // Of an effect the table says who changes what, not when.
+  // A table of effects has no column for the time: it tells who changes what, not when.
   if (table == nullptr || table->columns() < atom.terms.size()) return true;
   std::vector<GroundTermId> arguments;
   for (const auto id : atom.terms) {

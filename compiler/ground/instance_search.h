@@ -11,8 +11,8 @@
 namespace parallax::compiler {
 
 /// How to find the instances of a quantified formula that can say anything: an order of filters,
-/// equations, table look-ups and, as the last resort, enumerations of sorts. Made once per
-/// formula; what is bound outside is the same for all its uses.
+/// equations, table look-ups and, as the last resort, enumerations of sorts. Made once per formula;
+/// the variables bound outside are the same for all its uses.
 struct InstancePlan {
   enum class StepKind : std::uint8_t {
     kFilter,     // every variable of the conjunct is bound: drop the instance if it is false

@@ -19,8 +19,8 @@ namespace {
 /// Some fluents at timepoint 0 with their values, by fluent.
 using StateFacts = std::map<std::uint32_t, bool>;
 
-/// What the constraints that hold at every timepoint say of a step: preconditions of events, and
-/// events that exclude one another. Only what stands there as a literal is found.
+/// Facts about a step in the constraints that hold at every timepoint: preconditions of events, and
+/// events that exclude one another. Only facts that stand there as literals are found.
 class StepFacts {
  public:
   /// `model` outlives the object. Linear in the constraints' formulas.
@@ -195,7 +195,7 @@ class InvariantFinder {
     return result;
   }
 
-  /// What is known when the row takes effect, given that at most one member holds.
+  /// Facts known when the row takes effect, given that at most one member holds.
   StateFacts facts_in(const EffectRow& row, const Group& group) const {
     auto facts = facts_.of(row);
     const auto holds = [&](std::uint32_t f) {
@@ -259,12 +259,13 @@ class InvariantFinder {
       const auto found = other_facts.find(fact.first);
       return found != other_facts.end() && found->second != fact.second;
     });
-    // What one event initiates and another terminates at once has no trace (DEC9, DEC10).
+    // No trace has an event initiate a fluent that another terminates at the same time (DEC9,
+    // DEC10).
     return contradiction || changes(EffectKind::kTerminates, row.event, other.fluent, facts) ||
            changes(EffectKind::kTerminates, other.event, row.fluent, other_facts);
   }
 
-  /// Who terminates the member that holds initiates another.
+  /// Every event that terminates the member that holds initiates another member.
   bool one_is_kept(const Group& group) const {
     const auto terminations = rows_of(group, EffectKind::kTerminates);
     if (!terminations) return false;

@@ -7,11 +7,11 @@ namespace parallax::compiler {
 /// Finds groups of fluents of which at most one, or exactly one, holds at every timepoint, and adds
 /// that to the model (mutex groups, Helmert 2009, for the Event Calculus): the instances of a
 /// fluent symbol that differ in one argument. A group is taken if the values at 0 are stated and
-/// the effect rows keep it, whatever set of events happens: who initiates one member finds the
-/// others false or terminates them, and no two initiations can coincide. Preconditions and
-/// exclusions of events that hold at every timepoint are taken into account.
-/// The traces stay the same. Quadratic in the rows of a group; groups beyond kMaxGroup members or
-/// kMaxGroupRows rows are left alone.
+/// the effect rows keep it, whatever set of events happens: an event that initiates one member
+/// finds the others false or terminates them, and no two initiations can coincide. Preconditions
+/// and exclusions of events that hold at every timepoint are taken into account. The traces stay
+/// the same. Quadratic in the rows of a group; groups beyond kMaxGroup members or kMaxGroupRows
+/// rows are left alone.
 void add_invariants(GroundModel& model, const EffectRows& rows);
 
 inline constexpr std::size_t kMaxGroup = 64;

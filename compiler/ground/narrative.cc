@@ -162,7 +162,7 @@ void Narrative::walk() {
   }
 }
 
-/// What the rows of t make of the tracked fluents.
+/// Applies the effect rows of t to the tracked fluents.
 void Narrative::apply(Timepoint t) {
   const auto rows = rows_.single().find(t);
   if (rows == rows_.single().end()) return;

@@ -11,9 +11,9 @@
 
 namespace parallax::compiler {
 
-/// What a completed narrative settles before anything else is grounded: which events can happen
-/// when, and, walking forward from the initial state, which fluents can hold when. Its effect rows
-/// are made on the way, for the occurrences only.
+/// Bounds from a completed narrative, settled before anything else is grounded: which events can
+/// happen when and, walking forward from the initial state, which fluents can hold when. Its effect
+/// rows are made on the way, for the occurrences only.
 class Narrative {
  public:
   /// `keep_unreachable`: as in GroundOptions.

@@ -23,7 +23,7 @@ struct PassInfo {
 struct PassSize {
   std::size_t atoms = 0, nodes = 0;  // of the formula store
   std::size_t constraints = 0;       // formulas that hold
-  std::size_t clauses = 0;           // before what holds at every timepoint is repeated
+  std::size_t clauses = 0;           // before those of every timepoint are repeated
 };
 
 struct PassRun {
@@ -33,7 +33,7 @@ struct PassRun {
   PassSize size;
 };
 
-/// What the passes of a compilation did, in the order in which they ran.
+/// Log of the passes of a compilation, in the order in which they ran.
 struct PassLog {
   std::string wanted;                        // the pass after which the value is kept as text
   const base::SourceFiles* files = nullptr;  // for the places in that text; null: without places

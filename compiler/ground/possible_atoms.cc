@@ -190,7 +190,7 @@ void GroundTable::note(Index& index, std::uint64_t mask, std::uint32_t number) c
   index[hash(key)].push_back(number);
 }
 
-/// Two keys of equal hash share a list: whoever reads the rows compares their values anyway.
+/// Two keys of equal hash share a list: readers of the rows compare their values anyway.
 std::span<const std::uint32_t> GroundTable::find(std::uint64_t mask,
                                                  std::span<const GroundTermId> key) {
   const auto [entry, added] = indexes_.try_emplace(mask);

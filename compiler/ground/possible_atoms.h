@@ -44,8 +44,8 @@ class GroundTable {
   std::map<std::uint64_t, Index> indexes_;  // by mask
 };
 
-/// An upper bound of what can be true, known before grounding: joins run over these tables instead
-/// of whole sorts. An atom outside the bound is false in every trace.
+/// An upper bound on the atoms that can be true, known before grounding: joins run over these
+/// tables instead of whole sorts. An atom outside the bound is false in every trace.
 class PossibleAtoms {
  public:
   explicit PossibleAtoms(GroundModel& model);
@@ -62,7 +62,7 @@ class PossibleAtoms {
   bool is_scheduled(SymbolId event_symbol) const {
     return !timeless_ && scheduled_[event_symbol.index()];
   }
-  /// While on, bounds are those of all timepoints together: for what is said of every timepoint.
+  /// While on, bounds are those of all timepoints together: for formulas about every timepoint.
   void set_timeless(bool timeless) { timeless_ = timeless; }
   bool all_events_scheduled() const { return all_scheduled_; }
   /// The events of the symbols happen at most at these timepoints. Call once, before any table.
@@ -102,11 +102,11 @@ class PossibleAtoms {
   bool timeless_ = false;
   std::vector<std::pair<std::uint32_t, Timepoint>> occurrences_;
   std::unordered_set<std::uint64_t> occurrence_set_;
-  /// By fluent: what holds from a timepoint on, ascending.
+  /// By fluent: its value from a timepoint on, ascending.
   std::unordered_map<std::uint32_t, std::vector<std::pair<Timepoint, bool>>> tracked_;
 };
 
-/// What the constraints so far state outright of HoldsAt(fluent, 0), by fluent.
+/// Values of HoldsAt(fluent, 0) that the constraints so far state outright, by fluent.
 std::vector<Truth> initial_values(const GroundModel& model);
 
 /// Fluents that are always false are left out of large models only, with more HoldsAt atoms than

@@ -16,13 +16,13 @@ namespace parallax::compiler {
 
 /// Finds completed atoms that can be reasons of each other. Completion asks a reason of each atom
 /// that is true; under `A -> B` and `B -> A` each is the reason of the other, so both may be true
-/// out of nothing. A model whose atoms depend on each other without such a circle is tight (Fages
-/// 1994): there completion adds nothing that the formulas do not bring about.
+/// without any further reason. A model whose atoms do not depend on each other in such a circle is
+/// tight (Fages 1994): there completion admits only atoms that the formulas bring about.
 ///
 /// The reasons of ground atoms are split into conjunctions of literals. Atoms that follow from
-/// facts and atoms that nothing can bring about are taken out; what is left is searched for circles
-/// whose literals do not contradict each other. Linear in the reasons but for that search, which
-/// has a budget.
+/// facts and atoms that nothing can bring about are removed; the remaining atoms are searched for
+/// circles whose literals do not contradict each other. Linear in the reasons but for that search,
+/// which has a budget.
 class SupportLoops {
  public:
   /// `model` outlives the object.
@@ -44,7 +44,7 @@ class SupportLoops {
   };
   struct Reason {
     Key head;
-    std::vector<Literal> literals;  // that hold where it is one
+    std::vector<Literal> literals;  // literals that hold where it is one
     base::SourceRange source;
     bool dead = false;  // it asks for what nothing brings about
   };

@@ -68,10 +68,10 @@ struct GroundOptions {
   /// Off: every instance at every timepoint, from whole sorts. The models are the same.
   bool templates = true;  // say once what holds at every timepoint
   bool relevance = true;  // leave out what no trace can reach
-  /// Up to so many HoldsAt atoms fluents that are always false stay in the model
+  /// Up to this many HoldsAt atoms, fluents that are always false stay in the model
   /// (possible_atoms.h).
   std::size_t keep_unreachable = 100'000;
-  /// Add what follows by induction (compiler/ground/invariants.h); needs `templates`.
+  /// Add constraints that follow by induction (compiler/ground/invariants.h); needs `templates`.
   bool invariants = true;
   bool lint = false;  // also report completed atoms that are reasons of each other
 };

@@ -78,7 +78,8 @@ void form_incf(FormCompiler& c, DatumId form, FormItems items) {
   assign(c, place, form);
 }
 
-/// (push value variable), and (pushnew value variable), which adds what is no member by `eql`.
+/// (push value variable), and (pushnew value variable), which adds a value that is not yet a member
+/// by `eql`.
 void form_push(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() != 3) {
     return c.refuse(form, "expected a value and a variable");

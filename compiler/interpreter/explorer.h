@@ -32,7 +32,7 @@ struct Job {
   std::optional<PlanMachine::Ending> ending = {};  // goes on by the end of a `par`
   /// Goes on by asking the rules again: what carries out an action, or whether a goal holds.
   std::optional<std::variant<StopPerform, StopProof>> proof = {};
-  std::vector<std::uint32_t> answers = {};  // of the model, to what the rules asked so far
+  std::vector<std::uint32_t> answers = {};  // the model's answers to the rules' questions so far
 };
 
 /// Explores the states of a plan depth first, success before failure, and writes the graph.
@@ -76,8 +76,8 @@ class Explorer {
   /// One of the ways whose guards hold, or, with the number 0, none of them.
   BranchId one_of(const std::vector<ModelWay>& ways, DatumId form,
                   const std::function<Job(std::uint32_t)>& job);
-  /// What became of a perform or a goal that the rules were asked about: where control goes if
-  /// they ask the model, or if that was an error; otherwise the machine goes on, unless it stopped.
+  /// Outcome of asking the rules about a perform or a goal. Control goes to `target` if the rules
+  /// ask the model or report an error; otherwise the machine goes on, unless it stopped.
   struct Ruled {
     bool goes_on = false;
     std::optional<PlanTarget> target;

@@ -34,8 +34,8 @@ struct ClauseInstance {
 };
 ClauseInstance instance_of(const FactClause& clause, TermStore& terms);
 
-/// The clauses of a plan's `def-fact-group`s, in the order in which they stand, by the name of
-/// what they prove. Packages do not matter but for the functions of the plan that a clause names.
+/// The clauses of a plan's `def-fact-group`s, in their written order, by the name of the predicate
+/// that they prove. Packages matter only for the functions of the plan that a clause names.
 struct FactBase {
   std::map<std::string, std::vector<FactClause>, std::less<>> clauses;
   bool has(std::string_view name) const { return clauses.find(name) != clauses.end(); }
@@ -46,7 +46,7 @@ inline constexpr std::string_view kGroundingRule = "action-grounding";
 /// Is it (def-fact-group name (predicate...) clause...)?
 bool is_fact_group(const LispData& data, DatumId form);
 
-/// Reads all fact groups; CPL070 for what is no clause.
+/// Reads all fact groups; CPL070 for an entry that is no clause.
 FactBase read_fact_groups(const LispText& text, ValueStore& values, base::DiagnosticSink& sink);
 
 }  // namespace parallax::compiler

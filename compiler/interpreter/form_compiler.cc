@@ -121,7 +121,7 @@ base::DiagnosticBuilder FormCompiler::note_calls(base::DiagnosticBuilder report,
 }
 
 void FormCompiler::compile(DatumId form) {
-  // The reader's limit for what was written holds for what macros make of it.
+  // The reader's limit for written forms also holds for the expansions of macros.
   if (depth_ >= kMaxLispDepth) {
     if (expander_->stop()) {
       error(codes::kMacroLimit, form, kMaxLispDepth, "nested forms");
@@ -195,8 +195,8 @@ void FormCompiler::compile_list(DatumId form) {
     const auto height = code.height();
     known->second(*this, form, items);
     PARALLAX_ASSERT(failed_ || code.height() == height + 1);
-    // A form that reported an error may have stopped half-way; what follows is
-    // still checked.
+    // A form that reported an error may have stopped half-way; the forms after it are still
+    // checked.
     code.set_height(height + 1);
     return;
   }
@@ -288,7 +288,7 @@ bool FormCompiler::complete(std::uint32_t unit) {
   in_macro = was_in_macro;
   position = outer_position;
   code.resume(std::move(outside));
-  // What was refused half-way must not run, in no expansion either.
+  // Code that was refused half-way must not run, not even in an expansion.
   const bool good = sink_.error_count() == errors;
   if (!good) code.code().units[unit].ready = false;
   return good;

@@ -44,7 +44,7 @@ struct PlanFunction {
   bool top_level = false;  // def-top-level-cram-function: nothing in a plan may call it
 };
 
-/// A macro: a unit that takes the whole call and returns what it stands for.
+/// A macro: a unit that takes the whole call and returns its expansion.
 struct PlanMacro {
   std::string name;
   std::uint32_t unit = 0;
@@ -69,7 +69,7 @@ struct RetryCounter {
   DatumId number;
 };
 
-/// What the plan defines at top level, and the local functions met so far.
+/// The plan's definitions at top level, and the local functions met so far.
 struct PlanDefinitions {
   std::map<std::string, PlanFunction, std::less<>> functions;
   std::vector<std::string> function_order;
@@ -81,11 +81,11 @@ struct PlanDefinitions {
   std::map<std::uint32_t, RetryCounter> counters;  // those met so far, by the name's serial
 };
 
-/// What the compilers of the single forms share: the data, the code being written, the names, and
-/// the way back to `compile` for the forms inside. Each form is a function of its own; they stand
-/// by subject in <subject>_forms.cc, calls in function_calls.cc. Every one of them writes code that
-/// leaves one more value on the stack. Errors are reported wherever they are met, also on paths
-/// that no execution takes, and the compiler goes on.
+/// State shared by the compilers of the single forms: the data, the code being written, the names,
+/// and `compile` for the forms inside. Each form has a function of its own, grouped by subject in
+/// <subject>_forms.cc, calls in function_calls.cc. Each function writes code that leaves one more
+/// value on the stack. Errors are reported wherever they are met, also on paths that no execution
+/// takes, and the compiler goes on.
 class FormCompiler {
  public:
   FormCompiler(LispText& text, ValueStore& store, base::DiagnosticSink& sink, bool par_by_turns);
@@ -108,7 +108,7 @@ class FormCompiler {
   bool complete(std::uint32_t unit);
   /// The macro that the symbol at the head of a form means.
   const PlanMacro* find_macro(DatumId symbol) const;
-  /// What a call of the macro stands for; none: reported.
+  /// Expansion of a call of the macro; none: reported.
   std::optional<DatumId> expand(const PlanMacro& macro, DatumId call);
   /// A dotted list is data: as code it would be read as if the dot were not there.
   void check_dots(DatumId form);
@@ -131,7 +131,7 @@ class FormCompiler {
   void refuse(DatumId form, std::string_view text);
   void unsupported(DatumId form, std::string_view text);
   void unknown_form(DatumId form, DatumId symbol);
-  /// What is not evaluated must not perform either: the plan would silently lose an action.
+  /// Refuses a perform inside a form that is not evaluated: the plan would silently lose an action.
   void check_no_perform(DatumId form);
   std::string form_name(DatumId form) const;
   bool failed() const { return failed_; }

@@ -8,7 +8,7 @@
 
 namespace parallax::compiler {
 
-/// What a call goes to: a unit (global, or local with the distance of its frame) or a built-in.
+/// Target of a call: a unit (global, or local with the distance of its frame) or a built-in.
 struct Callee {
   const PlanFunction* function = nullptr;
   std::optional<std::uint32_t> level;
@@ -16,9 +16,9 @@ struct Callee {
   std::optional<LexicalBinding> local = {};  // of flet or labels
 };
 
-/// A local function, one of the plan, or a built-in, by what the symbol means in its package.
+/// A local function, one of the plan, or a built-in, by the symbol's meaning in its package.
 std::optional<Callee> find_callee(const FormCompiler& c, DatumId symbol);
-/// The same without the local ones: what a quoted name means.
+/// The same without the local ones: the meaning of a quoted name.
 std::optional<Callee> find_global_callee(const FormCompiler& c, DatumId symbol);
 /// The function that an argument of funcall and the mapping functions gives: one that is named or
 /// written there, or a value, which prepare_function leaves on the stack (else nil lies there).

@@ -124,7 +124,7 @@ PlanFunction declare_function(FormCompiler& c, DatumId form, std::string_view na
   return out;
 }
 
-/// Computes what the call left to the function, in the order of the parameters.
+/// Computes the arguments that the call left out, in the order of the parameters.
 std::uint32_t compile_defaults(FormCompiler& c, const PlanFunction& function) {
   std::uint32_t flags = 0;
   for (std::uint32_t i = 0; i < function.parameters.size(); ++i) {

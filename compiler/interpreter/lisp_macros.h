@@ -23,14 +23,14 @@ PlanMacro declare_macro(FormCompiler& c, DatumId form, std::string_view name, Da
 void compile_macro(FormCompiler& c, const PlanMacro& macro, FormItems body);
 
 /// Expands the calls of macros. A macro is a unit like any function; it runs on the unroller's own
-/// machine, on data as values, which may neither perform nor ask the model. What it hands on of its
-/// call are the very data of the call; what it makes is new and stands at the place in the macro's
-/// text that made it.
+/// machine, on data as values, and may neither perform nor ask the model. Data of the call that it
+/// passes on stay the data of the call; data that it makes are new and have their place in the
+/// macro's text.
 class MacroExpander {
  public:
   explicit MacroExpander(FormCompiler& c);
   std::optional<DatumId> expand(const PlanMacro& macro, DatumId call);
-  /// A bound was reached: what follows is not expanded. True if it was not known: report it.
+  /// Notes that a bound was reached: nothing more is expanded. True if it was not known: report it.
   bool stop() { return !std::exchange(full_, true); }
   /// A datum as a value that remembers where it stands; `made`: in a macro's own text.
   ValueId value_of(DatumId datum, bool made);

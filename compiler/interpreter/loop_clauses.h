@@ -43,7 +43,7 @@ struct LoopClause {
   std::optional<DatumId> limit;     // kRange; none: for ever
   std::optional<DatumId> step;      // kRange; kIn, kOn: the function to the rest
   std::optional<DatumId> then;      // kEquals
-  std::string into;                 // what collects: its own variable
+  std::string into;                 // variable to collect into
   std::optional<DatumId> result;    // the same, as written
   bool down = false;                // kRange: counts down
   bool exclusive = false;           // kRange: `below`, `above`
@@ -72,7 +72,7 @@ struct LoopError {
   std::optional<DatumId> at;
 };
 
-/// Parses what follows the word `loop`; bare forms repeat for ever.
+/// Parses the clauses after the word `loop`; bare forms repeat for ever.
 std::variant<LoopClauses, LoopError> parse_loop(const LispData& data,
                                                 std::span<const DatumId> items);
 

@@ -61,7 +61,7 @@ class LoopCompiler {
     }
   }
 
-  /// What kind of result the clauses without `into` collect.
+  /// Notes which kinds of result the clauses without `into` collect.
   void collect_results(const std::vector<LoopClause>& clauses) {
     for (const auto& clause : clauses) {
       collect_results(clause.inner);

@@ -253,7 +253,7 @@ Result<ValueId> PerformResolver::variable(const BindingEntry& entry, ValueId des
   return designator;
 }
 
-/// The formula of an entry with what the designator has under its keys.
+/// The formula of an entry with the values of the designator's keys.
 Result<FormulaTree> PerformResolver::fill(const BindingEntry& entry, const FormulaTree& formula,
                                           ValueId designator, SourceRange source) {
   Variables variables;

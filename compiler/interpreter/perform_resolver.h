@@ -78,8 +78,7 @@ class PerformResolver {
     ValueId object;
   };
   std::optional<Reference> reference(const BindingEntry& entry, ValueId designator) const;
-  /// What must hold for the object of the reference to be the one with this
-  /// name.
+  /// Condition under which the object of the reference is the one with this name.
   base::Result<FormulaTree> candidate(const Reference& reference, std::string_view name,
                                       base::SourceRange source);
 

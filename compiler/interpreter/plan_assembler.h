@@ -38,8 +38,8 @@ struct LexicalBinding {
 };
 
 /// Writes the code of a plan unit by unit: knows how high the stack of each open unit stands, which
-/// names are visible, and where jumps and exits still want their targets. It knows nothing of Lisp;
-/// what it writes is what it is told, one instruction or one small pattern a call.
+/// names are visible, and which jumps and exits still lack their targets. It knows nothing of Lisp;
+/// each call writes one instruction or one small pattern.
 class PlanAssembler {
  public:
   // --- instructions
@@ -80,10 +80,10 @@ class PlanAssembler {
   std::uint32_t add_handlers(std::vector<HandlerClause> table);
   void push_handlers(std::uint32_t table, DatumId source);
   void push_cleanup(std::uint32_t unit, DatumId source);
-  /// What follows is a task of its own, up to close_task.
+  /// Opens a task of its own for the code that follows, up to close_task.
   std::size_t open_task(DatumId source);
   void close_task(std::size_t scope, DatumId source);
-  /// The value at `place` of the open unit is what the global means, up to pop_guard.
+  /// Up to pop_guard, the global means the value at `place` of the open unit.
   void bind_special(std::uint32_t global, std::uint32_t place, DatumId source);
   void pop_guard(DatumId source);
 
@@ -93,7 +93,7 @@ class PlanAssembler {
   void leave_unit(PlanOp last, DatumId source);
   /// The branches of a `par` or `pursue`, each a unit, which take turns.
   void par(std::vector<std::uint32_t> units, bool pursue, DatumId source);
-  /// What is being written waits: a unit of its own is written in between.
+  /// The unit being written, set aside while a unit of its own is written in between.
   struct Suspended;
   Suspended suspend();
   void resume(Suspended outside);

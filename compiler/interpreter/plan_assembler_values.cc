@@ -50,7 +50,8 @@ void PlanAssembler::call_value(std::uint32_t arguments, bool spread, DatumId sou
   adjust(-static_cast<int>(arguments));
 }
 
-/// Notes what a function value uses from outside; nothing to note where none is in between.
+/// Notes the outer variables that a function value uses; nothing where no function value is in
+/// between.
 void PlanAssembler::note_use(const LexicalBinding& binding, std::uint32_t index, bool is_load) {
   OuterUse use;
   for (auto frame = std::size_t{binding.frame} + 1; frame < frames_.size(); ++frame) {

@@ -72,7 +72,7 @@ bool in_cleanup(const PlanBranchState& branch) {
   return false;
 }
 
-/// How indices move of what is put elsewhere: those from `frame` and `place` on.
+/// How indices move when part of a state is put elsewhere: those from `frame` and `place` on.
 struct Shift {
   std::size_t frame = 0;
   std::size_t frames = 0;  // by so much
@@ -94,8 +94,8 @@ std::uint32_t moved_place(std::uint32_t place, const std::vector<Shift>& shifts)
   return place;
 }
 
-/// Puts what the clean-ups of an ended branch need on top of everything: they run when control
-/// leaves what lies below.
+/// Puts the data that the clean-ups of an ended branch need on top of everything: they run when
+/// control leaves the part below.
 void keep_cleanups(PlanState& state, const PlanPar& par, const PlanBranchState& branch,
                    std::vector<Shift> shifts) {
   if (!has_cleanup(branch)) return;
@@ -248,7 +248,7 @@ std::optional<PlanStop> PlanMachine::wait(PlanState& state, const StopPerform& p
   const auto decided = std::find_if(state.pars.begin(), state.pars.end(), [](const PlanPar& par) {
     return par.failure.has_value() || par.value.has_value();
   });
-  // A branch of a `par` that is decided performs nothing new, but for what it begins with and the
+  // A branch of a decided `par` performs nothing new, except for its first perform and the
   // clean-ups it is in.
   bool goes_on = decided == state.pars.end() || decided->branches[decided->active].fresh;
   if (!goes_on) {

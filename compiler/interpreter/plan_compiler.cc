@@ -31,7 +31,7 @@ bool is_housekeeping(std::string_view head) {
          head == "proclaim" || head == "export" || head == "def-fact-group";
 }
 
-/// Collects what the file defines, compiles it, then what is to be run.
+/// Collects the file's definitions, compiles them, then the forms to be run.
 class PlanCompiler {
  public:
   PlanCompiler(LispText& text, ValueStore& values, base::DiagnosticSink& sink, bool interleave)
@@ -145,7 +145,7 @@ class PlanCompiler {
     c_.error(codes::kDuplicatePlanDefinition, items[1], c_.data.name(items[1]));
   }
 
-  /// What stands in a `progn` or `eval-when` at top level stands at top level.
+  /// Lists the forms at top level, including those inside a `progn` or `eval-when` there.
   void flatten(DatumId form) {
     std::vector<DatumId> open = {form};
     while (!open.empty()) {
@@ -163,7 +163,7 @@ class PlanCompiler {
     }
   }
 
-  /// True for a form that defines something, or says nothing about what is run.
+  /// True for a definition, and for a form that has no part in the run.
   bool define(DatumId form) {
     const auto head = c_.data.head(form).value_or("");
     const auto items = c_.data.children(form);
@@ -309,7 +309,7 @@ class PlanCompiler {
   std::vector<std::pair<std::size_t, std::string>> functions_;
   std::vector<Positioned> global_forms_;
   std::vector<Positioned> others_;      // no definitions, but perhaps calls of macros that define
-  std::vector<Positioned> bare_forms_;  // what is run
+  std::vector<Positioned> bare_forms_;  // forms to be run
   bool missing_ = false;                // of them, an expansion
 };
 

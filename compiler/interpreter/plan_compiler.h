@@ -15,9 +15,9 @@
 
 namespace parallax::compiler {
 
-/// A plan as code for a small stack machine. The compiler resolves variables, blocks and handlers;
-/// what is left at run time is a state of plain numbers, and two equal states behave alike: that is
-/// what lets the unroller merge paths. A variable is a place on its frame's part of the stack.
+/// A plan as code for a small stack machine. The compiler resolves variables, blocks and handlers,
+/// so that the state at run time consists of plain numbers. Two equal states behave alike, which
+/// lets the unroller merge paths. A variable is a place on its frame's part of the stack.
 enum class PlanOp : std::uint8_t {
   kConstant,      // push value a
   kLoad,          // push variable b of the frame a static links out
@@ -25,7 +25,7 @@ enum class PlanOp : std::uint8_t {
   kLoadGlobal,    // push global a
   kStoreGlobal,   // global a := pop
   kBindSpecial,   // global a means variable b of this frame from here on
-  kStoreSpecial,  // what global a means in this task := top, which stays
+  kStoreSpecial,  // meaning of global a in this task := top, which stays
   kPop,           // drop the top
   kSqueeze,       // drop a values below the top
   kJump,          // to a

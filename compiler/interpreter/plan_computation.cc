@@ -1,4 +1,4 @@
-// What the machine does for rules and designators: functions that run on their own, identities and
+// The machine's services for rules and designators: functions that run on their own, identities and
 // links of designators.
 #include <algorithm>
 #include <set>
@@ -11,7 +11,7 @@
 namespace parallax::compiler {
 
 void drop_dead_links(PlanState& state, std::span<const ValueId> more, const ValueStore& values) {
-  // What calls a computation may refer to more than its state shows.
+  // The caller of a computation may refer to more than the computation's state shows.
   if (state.links.chains.empty() || state.links.floor > 1) return;
   std::set<std::uint32_t> identities;
   std::set<ModelValueId> registers;
@@ -29,7 +29,7 @@ void drop_dead_links(PlanState& state, std::span<const ValueId> more, const Valu
     return value.kind == ValueKind::kModel ? registers.contains(value.model)
                                            : identities.contains(value.identity);
   };
-  // What a living chain ends in lives, with all that is in it.
+  // The last value of a living chain is alive, and so is everything in it.
   std::vector<bool> kept(state.links.chains.size(), false);
   for (bool changed = true; changed;) {
     changed = false;

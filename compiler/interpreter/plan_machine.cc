@@ -204,7 +204,7 @@ std::uint32_t PlanMachine::linked(const PlanState& state, std::uint32_t level) c
 }
 
 std::size_t PlanMachine::place(const PlanState& state, const PlanInstruction& instruction) const {
-  // What a function value keeps lies below its frame: the index is negative.
+  // Values captured by a function value lie below its frame: the index is negative.
   const auto index = static_cast<std::ptrdiff_t>(static_cast<std::int32_t>(instruction.b));
   const auto base = static_cast<std::ptrdiff_t>(state.frames[linked(state, instruction.a)].base);
   return static_cast<std::size_t>(base + index);
@@ -416,7 +416,7 @@ PlanMachine::Step PlanMachine::enter_unit(PlanState& state, std::uint32_t index,
   if (!unit.ready) return StopUnit{index};
   std::uint32_t depth = 0;
   const PlanFrame* outermost = nullptr;
-  // What lies between a handler and the frame it belongs to has failed and is not active any more.
+  // Frames between a handler and the frame it belongs to have failed and are no longer active.
   for (auto f = static_cast<std::uint32_t>(state.frames.size()); f-- > 0;) {
     const auto& active = state.frames[f];
     if (active.unit == index) {
@@ -425,7 +425,7 @@ PlanMachine::Step PlanMachine::enter_unit(PlanState& state, std::uint32_t index,
     }
     if (active.kind == FrameKind::kHandler) f = active.link + 1;
   }
-  // Our own Lisp calls itself for what the plan gives it, and ends.
+  // Our own Lisp recurses over data of the plan, and ends.
   if (depth >= limits_.max_call_depth && !data_.in_library(unit.source)) {
     if (outermost->performs != state.performs) return StopBound{unit.name, place_of(form)};
     report(codes::kPlanRecursion, form, unit.name, limits_.max_call_depth);

@@ -21,8 +21,8 @@ namespace parallax::compiler {
 enum class FrameKind : std::uint8_t { kCall, kHandler, kCleanup };
 enum class PendingKind : std::uint8_t { kNone, kExit, kCross, kFail };
 
-/// What a clean-up interrupted: a jump out of the frames above `frame`, a failure on its way out of
-/// a task, or the end of the plan.
+/// Action that a clean-up interrupted: a jump out of the frames above `frame`, a failure on its way
+/// out of a task, or the end of the plan.
 struct Pending {
   PendingKind kind = PendingKind::kNone;
   std::uint32_t frame = 0;
@@ -70,8 +70,8 @@ struct PlanTurn {
 
 struct PlanPar;
 
-/// A branch of a `par` that is not running: what it has on top of what all branches share. They
-/// begin at the same height, so that the indices in it are right whenever it is put back.
+/// A branch of a `par` that is not running: its part on top of the state that all branches share.
+/// All begin at the same height, so that the indices in it are right whenever it is put back.
 struct PlanBranchState {
   bool started = false;
   bool fresh = false;  // on the way to its first perform
@@ -88,7 +88,7 @@ struct PlanBranchState {
 /// that leaves a branch decides it, and of a `pursue` the first value as well. Then the other
 /// branches may still carry out the perform at which they wait, and nothing more.
 struct PlanPar {
-  std::uint32_t frames = 0;  // what the branches share
+  std::uint32_t frames = 0;  // number of frames that the branches share
   std::uint32_t guards = 0;
   std::uint32_t height = 0;
   std::size_t active = 0;             // the branch whose state is in place
@@ -182,7 +182,7 @@ class PlanMachine {
   PlanState start() const;
   /// A state that calls the unit with these arguments; it is done with the result on the stack.
   PlanState start(std::uint32_t unit, const std::vector<ValueId>& arguments) const;
-  /// What errors are about, if they arise at `own`: a macro is blamed on its call.
+  /// Place to name in errors that arise at `own`: an error in a macro is reported at its call.
   struct Blame {
     DatumId own;
     DatumId call;
@@ -209,7 +209,7 @@ class PlanMachine {
     ParEnd end = ParEnd::kValue;
   };
   static std::vector<Ending> endings(const PlanState& state);
-  /// The `par` ends like that; run goes on with what follows.
+  /// Ends the `par` like that; run goes on after it.
   std::optional<PlanStop> end_par(PlanState& state, const Ending& ending);
   /// Puts that branch in place; its perform is next.
   static StopPerform resume(PlanState& state, const BranchPath& path);

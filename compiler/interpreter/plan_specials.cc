@@ -35,7 +35,7 @@ PlanMachine::Step PlanMachine::store_special(PlanState& state, const PlanInstruc
   return StopError{};
 }
 
-/// A variable of the running frame is what the global means from here on.
+/// From here on the global means a variable of the running frame.
 PlanMachine::Step PlanMachine::bind_special(PlanState& state, const PlanInstruction& instruction) {
   const auto frame = static_cast<std::uint32_t>(state.frames.size() - 1);
   const auto place = state.frames[frame].base + instruction.b;
@@ -45,7 +45,7 @@ PlanMachine::Step PlanMachine::bind_special(PlanState& state, const PlanInstruct
 
 namespace {
 
-/// A handler does not see what is left of ended branches, whose clean-ups are still to run.
+/// A handler does not see the remains of ended branches, whose clean-ups are still to run.
 bool left_over(const PlanState& state, std::size_t guard) {
   const auto at = [&](std::size_t index) {
     return state.guards.begin() + static_cast<std::ptrdiff_t>(index);

@@ -1,4 +1,4 @@
-// What plans do with the solutions of `prolog`, and designators made for the length of a body.
+// Forms that use the solutions of `prolog`, and designators made for the length of a body.
 #include "compiler/interpreter/form_compiler.h"
 #include "compiler/interpreter/variables.h"
 

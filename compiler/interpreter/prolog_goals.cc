@@ -115,7 +115,8 @@ Step goal_description(Search& search, const Arguments& args) {
   return Search::truth(search.terms.unify(args[1], list));
 }
 
-/// (designator class description designator): makes one of what is known, or takes one apart.
+/// (designator class description designator): makes a designator from a known description, or takes
+/// one apart.
 Step goal_designator(Search& search, const Arguments& args) {
   if (args.size() == 1) return Search::truth(designator(search, args[0]).has_value());
   if (args.size() != 3)

@@ -246,12 +246,12 @@ bool ProofSearch::collects() const {
 }
 
 /// A query of the binding table: the model answers, and a free variable is any constant for which
-/// it holds. What failed later is tried again with those that are left.
+/// it holds. If a later goal fails, the remaining constants are tried.
 ///
-/// The model answers in any order, but not every order has to be looked at: what comes of a way
-/// does not depend on those that failed before it, so it is enough to take it first. Only the end
-/// at which all have failed is left, and one order leads there, the ascending one. A designator
-/// that was equated on the way stays so; then what failed does matter.
+/// The model answers in any order, but not every order has to be explored: the consequences of a
+/// way do not depend on the ways that failed before it, so it is enough to take it first. Only the
+/// end at which all have failed is left, and one order leads there, the ascending one. A designator
+/// that was equated on the way stays so; then the failed ways do matter.
 Step ProofSearch::ask(PrologTermId term, const Choice* before, std::uint32_t next, DatumId at) {
   auto asked = query(term, at);
   if (!asked) return Step::kStop;
@@ -306,7 +306,7 @@ Step ProofSearch::collected(std::uint32_t which, std::uint32_t next) {
   auto items = collector.items;
   if (collector.kind != "findall" && items.empty()) return Step::kFalse;
   if (collector.kind == "setof") {
-    // Of equal ones the last stays, as with remove-duplicates.
+    // The last of equal solutions stays, as with remove-duplicates.
     Arguments kept;
     std::vector<ValueId> seen;
     for (auto item = items.rbegin(); item != items.rend(); ++item) {

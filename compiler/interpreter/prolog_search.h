@@ -27,8 +27,9 @@ struct ModelWay {
   bool elsewhere = false;  // another order of the answers takes it: here it can only not hold
 };
 
-/// What only the model knows. The answer is 0 if none of the ways holds, else the number of one
-/// that does, counted from 1. Without ways: other answers cover all that could come of these.
+/// Question that only the model can answer. The answer is 0 if none of the ways holds, else the
+/// number of one that does, counted from 1. Without ways: other answers cover all that could follow
+/// from these.
 struct ProofQuestion {
   std::vector<ModelWay> ways;
 };
@@ -47,15 +48,15 @@ using ProofStop = std::variant<ProofSolved, ProofNone, ProofQuestion, ProofFaile
 struct ProofAnswers {
   std::span<const std::uint32_t> given;
   std::size_t next = 0;
-  std::map<std::string, bool, std::less<>> known;  // by formula: what the answers said of it
+  std::map<std::string, bool, std::less<>> known;  // by formula: its value according to the answers
 
-  /// What the answers said of a formula.
+  /// The formula's value according to the answers; none: they do not tell.
   std::optional<bool> said(const FormulaTree& guard) const;
   /// The answer to the question; none: it was not given yet. What is known is not asked again.
   std::optional<std::uint32_t> take(std::span<const ModelWay> ways);
 };
 
-/// What a proof needs of the plan and the model.
+/// The plan and the model as a proof sees them.
 class ProofWorld {
  public:
   ProofWorld() = default;
@@ -85,8 +86,7 @@ class ProofWorld {
 
 /// Proves goals by the clauses of a plan, depth first and in written order, as CRAM's Prolog does:
 /// control (`and`, `or`, `not`, `->`, `once`, `cut` ...), the predicates of prolog_goals.cc,
-/// queries of the binding table, then clauses. Nothing recursive; what it may cost is bounded by
-/// `spend`.
+/// queries of the binding table, then clauses. No recursion; the cost is bounded by `spend`.
 class ProofSearch {
  public:
   ProofSearch(const FactBase& facts, ProofWorld& of_plan, ValueStore& store, ProofAnswers& answers)
@@ -120,7 +120,7 @@ class ProofSearch {
   std::optional<DatumId> last_clause() const { return clause_; }
 
  private:
-  /// What is still to be proved: a linked list, 0 is its end.
+  /// A goal still to be proved, in a linked list; 0 is its end.
   struct Goal {
     enum class Kind : std::uint8_t { kProve, kCut, kSoftCut, kCollect, kFail };
     Kind kind = Kind::kProve;
@@ -129,7 +129,7 @@ class ProofSearch {
     std::uint32_t number = 0;  // kProve: where `cut` cuts to; cuts: the choice; kCollect: which
     DatumId at;
   };
-  /// What is tried when the way taken has failed.
+  /// Alternative to try when the current way has failed.
   struct Choice {
     enum class Kind : std::uint8_t {
       kClauses,

@@ -30,7 +30,7 @@ class TermStore {
   /// Quoted data as a term: symbols that begin with `?` become variables, those of one name one.
   PrologTermId from_data(ValueId data, std::map<std::string, PrologTermId>& variables);
 
-  /// What the term is bound to by now: an atom, a pair or a free variable.
+  /// Current binding of the term: an atom, a pair or a free variable.
   PrologTermId walk(PrologTermId term) const;
   bool is_variable(PrologTermId term) const {
     return nodes_[walk(term).index()].kind == Kind::kVariable;

@@ -24,7 +24,7 @@ void form_quote(FormCompiler& c, DatumId form, FormItems items) {
   c.code.constant(items.size() == 2 ? c.quoted_value(items[1]) : c.values.nil(), form);
 }
 
-/// Pushes what the template `datum` stands for; `depth` backquotes are around it. A list of a
+/// Pushes the value of the template `datum`, which has `depth` backquotes around it. A list of a
 /// macro's text remembers its place.
 void quasiquote(FormCompiler& c, DatumId datum, int depth, const DatumSet& open) {
   const auto items = c.data.children(datum);

@@ -64,7 +64,7 @@ std::optional<std::vector<ModelWay>> RuleProofs::ways(
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (arguments[i]) continue;
     const auto& constants = options_.query_candidates;
-    // What the formula says nothing of can be anything.
+    // A variable about which the formula says nothing can be anything.
     const bool known = index < constants.size() && i < constants[index].size();
     const auto names = known ? constants[index][i] : std::vector<std::string>();
     if (names.empty()) {

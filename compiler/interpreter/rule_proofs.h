@@ -15,7 +15,7 @@
 
 namespace parallax::compiler {
 
-/// The function of the plan that carries out an action, and what it is called with.
+/// The function of the plan that carries out an action, and its arguments.
 struct PlanCall {
   std::uint32_t unit = 0;
   std::vector<ValueId> arguments;  // one for each parameter
@@ -50,7 +50,7 @@ class RuleProofs final : public ProofWorld {
 
   bool has_grounding_rules() const { return facts_.has(kGroundingRule); }
   using Grounding = std::variant<PlanCall, NoPlanCall, ProofQuestion, ProofFailed, ProofError>;
-  /// What the first solution of (action-grounding designator ?solution) calls.
+  /// The call in the first solution of (action-grounding designator ?solution).
   Grounding ground(const StopPerform& perform, const DesignatorLinks& links,
                    std::span<const std::uint32_t> given);
   using Proof = std::variant<ProofValue, ProofQuestion, ProofFailed, ProofError>;
@@ -58,7 +58,7 @@ class RuleProofs final : public ProofWorld {
   Proof prove(const StopProof& proof, const DesignatorLinks& links,
               std::span<const std::uint32_t> given);
 
-  // --- what a search needs
+  // --- interface to a search
   bool is_query(std::string_view name, std::size_t arguments) override;
   std::optional<std::vector<ModelWay>> ways(std::string_view name,
                                             std::span<const std::optional<ValueId>> arguments,

@@ -1,5 +1,5 @@
-// Performs that no entry of the binding table has, and goals of `prolog`: the rules of the plan say
-// what they mean, and the model answers what the rules ask.
+// Performs without an entry in the binding table, and goals of `prolog`: the rules of the plan
+// define their meaning, and the model answers what the rules ask.
 #include <utility>
 
 #include "compiler/base/codes/plans.h"
@@ -7,7 +7,7 @@
 
 namespace parallax::compiler {
 
-/// Does no entry of the table say what the action means, so that the rules do?
+/// Is the action missing in the table, so that the rules define its meaning?
 bool Explorer::is_ruled(const StopPerform& perform) const {
   const auto& value = values_[perform.designator];
   const bool action =
@@ -44,8 +44,8 @@ Explorer::Ruled Explorer::ask_model(const Job& job, const ProofQuestion& questio
   return {false, target, {}};
 }
 
-/// No rule carries the action out: it fails as in CRAM if one of its type is there, else the plan
-/// says something of which nothing is known.
+/// No rule carries the action out: it fails as in CRAM if there is a rule of its type, else the
+/// action is unknown.
 Explorer::Ruled Explorer::nothing_fits(Job& job, const StopPerform& perform, bool fits) {
   if (!fits) {
     resolver_.find_entry(perform.designator, data_.source(perform.form));

@@ -38,7 +38,7 @@ std::variant<std::vector<ValueId>, std::string> unit_arguments(const PlanUnit& u
         for (auto i = keys_from; i + 1 < given.size(); i += 2) {
           if (!is_key(given[i], parameter.keyword)) continue;
           value = given[i + 1];
-          break;  // of two with one key the first counts
+          break;  // if a key is given twice, the first counts
         }
         out.push_back(value);
         break;

@@ -11,8 +11,9 @@
 namespace parallax::compiler {
 
 /// One value for each parameter of the unit, in their order, from the values of a call that is
-/// known only while the plan runs: `:key value` pairs find their parameters, what is left out gets
-/// its default, or the mark by which the unit computes it. A text says what does not fit.
+/// known only while the plan runs: `:key value` pairs find their parameters; an omitted parameter
+/// gets its default, or the mark by which the unit computes it. A text is the error if the values
+/// do not fit.
 std::variant<std::vector<ValueId>, std::string> unit_arguments(const PlanUnit& unit,
                                                                std::span<const ValueId> given,
                                                                ValueStore& values);

@@ -149,8 +149,8 @@ void Explorer::fail_by_reason(LocationId id, const PlanState& state, DatumId for
                std::make_move_iterator(jobs.rend()));
 }
 
-/// What a perform returns. Where the plan asks for properties, it keeps the description by which it
-/// was sought.
+/// Object that a perform returns. If the plan asks for properties, the object keeps the description
+/// by which it was sought.
 ValueId Explorer::found_object(ModelValueId id, ValueId designator) {
   const auto sought = code_.describes ? values_.key(designator, "object") : std::nullopt;
   Value value;

@@ -8,7 +8,7 @@
 namespace parallax::compiler {
 
 LexicalBinding variable(const FormCompiler& c, DatumId symbol, std::uint32_t place) {
-  // Names in our own Lisp are none of the plan's.
+  // Names in our own Lisp never refer to globals of the plan.
   const bool special = c.defined.globals.contains(c.data.key(symbol)) && !c.data.in_library(symbol);
   return special ? c.code.named(BindingKind::kSpecial, c.data.key(symbol), place)
                  : c.code.named(BindingKind::kVariable, c.data.name(symbol), place);

@@ -5,13 +5,13 @@
 
 namespace parallax::compiler {
 
-// What a plan tells the world around the robot rather than the robot: logging, the belief state,
-// markers and the simulator's world. It is accepted and does nothing, because the model's own
-// axioms say what is so. docs/plan_language.md lists the names.
+// Forms that address the world around the robot rather than the robot: logging, the belief state,
+// markers and the simulator's world. They are accepted and do nothing, because the model's own
+// axioms describe the world. docs/plan_language.md lists the names.
 
 /// Forms that do nothing and have no value, whatever package they are of.
 std::span<const std::string_view> ignored_forms();
-/// Packages of which every function does nothing.
+/// Packages whose functions all do nothing.
 std::span<const std::string_view> ignored_packages();
 /// Functions of the simulator's packages that do nothing, with the package.
 std::span<const std::string_view> ignored_functions();

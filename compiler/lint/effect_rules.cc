@@ -28,7 +28,7 @@ std::optional<std::string> bad_arguments(const LintContext& context, TermId id, 
   return std::nullopt;
 }
 
-/// Arithmetic of which an operand has to be computed first, and not from numbers alone.
+/// Arithmetic with an operand that has to be computed first, and not from numbers alone.
 bool is_nested(const TypedModel& model, const Term& term) {
   if (term.kind != TermKind::kArithmetic) return false;
   bool nested = false, varies = false;

@@ -140,7 +140,7 @@ class HorizonRule {
     }
   }
 
-  /// Adds what a comparison `left < right + more` says of the variable on its left.
+  /// Adds the bound that a comparison `left < right + more` gives the variable on its left.
   static bool bound(const Linear& left, const Linear& right, std::int64_t more, std::int64_t last,
                     Bounds& bounds) {
     if (!left.variable) return false;
@@ -195,7 +195,7 @@ class HorizonRule {
   /// Can the time lie behind the horizon, or an event's at it, where the bounds hold?
   bool may_be_missing(TermId time, bool event, const Bounds& bounds) const {
     const auto& term = model_.terms[time];
-    // A number is subtracted: what is left is no later.
+    // A number is subtracted: the difference is no later.
     if (term.kind == TermKind::kArithmetic && term.op == ArithmeticOp::kSubtract && !linear(time)) {
       return may_be_missing(term.arguments[0], event, bounds);
     }
@@ -353,7 +353,7 @@ class HorizonRule {
   const TypedModel& model_;
   const CoreSymbols& core_;
   std::int64_t last_ = 0;
-  Bounds outer_;     // of what stands outside of the quantifier at hand
+  Bounds outer_;     // bounds outside of the quantifier at hand
   std::string why_;  // empty: nothing was found
 };
 

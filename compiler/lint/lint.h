@@ -12,7 +12,7 @@ namespace parallax::compiler {
 
 class LintContext;
 
-/// One rule: what it looks for, and the function that reports it.
+/// One rule: its description, and the function that reports it.
 struct LintRule {
   base::DiagnosticCode code;
   std::string_view name;         // "unused-variable"
@@ -20,12 +20,12 @@ struct LintRule {
   void (*run)(const LintContext&);
 };
 
-/// What is legal but hardly meant, W21xx: for `check`.
+/// Rules for legal but suspicious text, W21xx: for `check`.
 std::span<const LintRule> lint_rules();
 
-/// Where the 2005 reasoner silently does something else, W22xx: for every command that reads a
-/// model in its standard meaning. Five more such places are reported by those who see them first:
-/// W1101 by the lexer, W2001, W2007 and W2008 by the checker.
+/// Rules for places where the 2005 reasoner silently does something else, W22xx: for every command
+/// that reads a model in its standard meaning. Five more such places are reported where they are
+/// first seen: W1101 by the lexer, W2001, W2007 and W2008 by the checker.
 std::span<const LintRule> difference_rules();
 
 /// Rules about formulas that make answers differ from one horizon to the next, for commands that

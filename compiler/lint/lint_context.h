@@ -63,11 +63,11 @@ class LintContext {
   bool mentioned(SymbolId symbol) const { return mentioned_[symbol.index()]; }
   bool mentioned(ObjectId object) const { return objects_mentioned_[object.index()]; }
   bool has_variable(SortId sort) const { return variable_sorts_[sort.index()]; }
-  /// Of a fluent: can some axiom of this kind be about it?
+  /// Can some axiom of this kind be about the fluent?
   bool affected(SymbolId fluent, EffectKind kind) const;
-  /// Of a fluent: can some trajectory end in it?
+  /// Can some trajectory end in the fluent?
   bool is_target(SymbolId fluent) const;
-  /// Of an event: can some effect axiom be about it?
+  /// Can some effect axiom be about the event?
   bool has_effect(SymbolId event) const;
 
   /// Visits every formula that the model asserts or uses as a condition, whole.

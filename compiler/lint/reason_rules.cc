@@ -14,7 +14,7 @@ namespace parallax::compiler {
 
 namespace {
 
-/// What the model completes, by predicate.
+/// Completion of one predicate: over all axioms, or over those with the labels.
 struct CompletedPredicate {
   bool over_everything = false;
   std::set<std::string> labels;

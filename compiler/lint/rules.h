@@ -48,11 +48,11 @@ void find_nested_arithmetic(const LintContext& context);
 // fact_rule.cc
 void find_facts_beside_rules(const LintContext& context);
 
-/// Why the condition cannot hold in any instance, as the end of a sentence; nothing where that is
-/// not plain from the condition alone. Looked at are its conjuncts, also those below `{..}`: a term
-/// compared with itself, two constants, a term equated with different constants or bounded by
-/// numbers that leave nothing between them, a literal beside its negation. Sound: what is named
-/// can indeed not hold. Linear in the condition but for look-ups.
+/// Reason why the condition cannot hold in any instance, as the end of a sentence; none where that
+/// is not plain from the condition alone. Only its conjuncts are examined, also those below `{..}`:
+/// a term compared with itself, two constants, a term equated with different constants or bounded
+/// by numbers that leave nothing between them, a literal beside its negation. Sound: a condition
+/// that is reported cannot hold. Linear in the condition but for look-ups.
 std::optional<std::string> contradiction(const LintContext& context, TypedFormulaId condition);
 
 }  // namespace parallax::compiler

@@ -18,7 +18,7 @@ void for_each_inertial_fluent(const LintContext& context, const Visit& visit) {
     const bool inertial = symbol.kind == SymbolKind::kFluent && !symbol.noninertial &&
                           !symbol.manual_release && !context.is_target(id);
     if (!inertial || context.built_in(symbol.declared)) continue;
-    // What is released changes without an event of these two kinds.
+    // A released fluent changes without an event of these two kinds.
     if (context.affected(id, EffectKind::kReleases)) continue;
     visit(id, context.affected(id, EffectKind::kInitiates),
           context.affected(id, EffectKind::kTerminates));

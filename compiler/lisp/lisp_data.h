@@ -56,13 +56,14 @@ class LispData {
   DatumId add_dotted(std::vector<DatumId> children, DatumId tail, base::SourceRange source);
 
   const Datum& operator[](DatumId id) const { return data_[id]; }
-  /// Data, or places in lists if those are more: (a . (b c)) copies what it folds.
+  /// Number of data, or of places in lists if there are more: (a . (b c)) copies what it folds.
   std::size_t size() const { return std::max(data_.size(), places_); }
   /// The elements of a list; empty for anything else.
   std::span<const DatumId> children(DatumId id) const;
   const std::string& name(DatumId id) const { return names_[data_[id].name.index()]; }
   const std::string& package(DatumId id) const { return names_[data_[id].package.index()]; }
-  /// What the plan's functions and globals are found by; the name unless packages say otherwise.
+  /// Key by which the plan's functions and globals are found; the name unless packages say
+  /// otherwise.
   const std::string& key(DatumId id) const { return names_[data_[id].key.index()]; }
   void set_key(DatumId id, std::string_view key) { data_[id].key = intern(key); }
   bool knows_name(std::string_view name) const { return name_ids_.contains(name); }
@@ -81,11 +82,11 @@ class LispData {
   /// The symbol at the head of a non-empty list.
   std::optional<std::string_view> head(DatumId id) const;
 
-  /// What was added from `begin` on is the expansion of the macro call `call`.
+  /// Marks the data added from `begin` on as the expansion of the macro call `call`.
   void note_expansion(DatumId begin, DatumId call);
   /// The call of the macro that made this datum, if one did.
   std::optional<DatumId> macro_call(DatumId id) const;
-  /// What was added from `begin` on is our own Lisp: errors in it are those of its caller.
+  /// Marks the data added from `begin` on as our own Lisp: errors in it are those of its caller.
   void note_library(DatumId begin) { library_ = {begin, end_id(), begin}; }
   bool in_library(DatumId id) const { return library_.begin <= id && id < library_.end; }
   DatumId end_id() const { return data_.id_at(data_.size()); }

@@ -48,7 +48,8 @@ class PackageResolver {
     return sink_.error(codes::kPlanPackage, data_.source(at), what, text);
   }
 
-  /// What names a package or a symbol of one: a symbol, a keyword or a string, in any case.
+  /// Name of a package or of one of its symbols, given as a symbol, a keyword or a string in any
+  /// case.
   std::optional<std::string> designated(DatumId datum) {
     if (data_.is_symbol(datum) || data_.is_keyword(datum)) return data_.name(datum);
     if (!data_.is_string(datum)) return std::nullopt;

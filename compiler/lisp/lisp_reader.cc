@@ -19,7 +19,7 @@ using base::SourceRange;
 
 namespace {
 
-/// What waits for its next datum.
+/// Kind of an open datum, which waits for its next part.
 enum class OpenKind : std::uint8_t {
   kList,
   kPrefix,   // 'x and the like: takes one datum
@@ -37,7 +37,7 @@ struct OpenDatum {
   std::size_t tail = 0;                           // the first child behind the dot
 };
 
-/// Reads a file without recursion: what is open lies on a stack.
+/// Reads a file without recursion: open data lie on a stack.
 class LispReader {
  public:
   LispReader(const base::SourceFiles& files, base::FileId file, LispText into,

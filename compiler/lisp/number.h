@@ -12,8 +12,8 @@ namespace parallax::compiler {
 /// 2^62 * 4 is 1.8446744073709552e19. Inexactness never goes away again.
 class Number {
  public:
-  /// What `eql` tells apart beside the value. A float was written with a point or an exponent, a
-  /// double with `d`, or computed from such a number.
+  /// Type that `eql` distinguishes beside the value. A float was written with a point or an
+  /// exponent, a double with `d`, or computed from such a number.
   enum class Kind : std::uint8_t { kRational, kSingle, kDouble };
 
   Number() = default;

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a system says of itself and of others; nothing of it is evaluated or needed.
+/// Keys by which a system describes itself or names other systems; they are not evaluated.
 constexpr std::array<std::string_view, 17> kRemarks = {"name",
                                                        "author",
                                                        "maintainer",
@@ -145,7 +145,8 @@ class SystemReader {
     return out;
   }
 
-  /// What a component needs goes before it. As deep as there are components at most.
+  /// Visits the components that this one needs before it. The recursion is at most as deep as there
+  /// are components.
   void visit(Component& part, std::vector<Component>& parts,
              const std::map<std::string, std::size_t, std::less<>>& by_name,
              std::vector<SystemFile>& out) {

@@ -309,7 +309,7 @@ base::Status encode_violation(const StateConstraint& property, bool has_plan, Gr
   return TemporalEncoder(property, origin, model, grounder, sink).require_violation(hit, complete);
 }
 
-/// What the model says of its own making, so that it can be read without the
+/// Records how the model was made (producer, options, sources), so that it can be read without the
 /// texts.
 void describe(const CompileInput& input, const base::SourceFiles& files, CompiledModel& model) {
   model.producer = input.producer;
@@ -329,7 +329,7 @@ std::vector<PassInfo> compile_passes() {
 
 base::Result<Compilation> compile_model(const CompileInput& input, base::SourceFiles& files,
                                         base::DiagnosticSink& sink) {
-  // Who asks for the old meaning hears only where it is not met.
+  // In the old meaning, only differences that are not reproduced are reported.
   if (input.ground.meaning == Meaning::kDecreasoner) {
     for (const auto code : reproduced_differences()) sink.mute(code);
   }

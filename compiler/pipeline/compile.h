@@ -33,8 +33,8 @@ struct PlanInput {
   std::int32_t location_samples = 0;
   bool interleave = false;
   bool failures_by_reason = false;
-  /// Where neither input nor model give a horizon: as many timepoints as the longest path of the
-  /// plan has performs, at most so many.
+  /// Used where neither input nor model give a horizon: as many timepoints as the longest path of
+  /// the plan has performs, at most this number.
   std::int64_t max_horizon = 50;
 };
 
@@ -43,7 +43,7 @@ struct PlanInput {
 struct ConstraintText {
   base::SourceRange text;
   base::SourceRange place;
-  bool negated = false;  // what counts is that the formula does not hold
+  bool negated = false;  // the constraint is that the formula does not hold
 };
 
 /// A formula about a state with its place; the timepoint of the state is called `time` in it. Or
@@ -63,7 +63,7 @@ struct CompileInput {
   std::optional<std::int64_t> horizon;  // replaces the range of `time`
   std::optional<PlanInput> plan;
   std::vector<ConstraintText> constraints;
-  /// What best traces have least of, the most important one first; see objective.h.
+  /// Quantities that best traces minimize, the most important one first; see objective.h.
   std::vector<base::SourceRange> objectives = {};
   bool objectives_of_model = false;  // those that its `minimize` statements say
   bool hits_at_start = false;        // the constraints may also hold at timepoint 0
@@ -71,9 +71,9 @@ struct CompileInput {
   std::string producer;   // the program and its version, for the artifact; may be empty
   bool costs = false;     // also count what each axiom costs
   std::string emit_pass;  // the value after this pass is wanted as text; may be empty
-  bool lint = false;      // also report what is legal but hardly meant (W21xx)
-  /// The model is only to be written (CompiledModel::folded): its memory does not grow with the
-  /// horizon by what holds at every timepoint.
+  bool lint = false;      // also report legal but suspicious text (W21xx)
+  /// The model will only be written (CompiledModel::folded). Clauses that hold at every timepoint
+  /// are kept once, so its memory does not grow with the horizon by them.
   bool folded = false;
 };
 
@@ -82,7 +82,7 @@ struct Compilation {
   std::unique_ptr<TypedModel> typed;         // the checked model, for an independent evaluation
   std::vector<StateConstraint> constraints;  // as they were asked for; part of `typed`
   std::vector<AxiomCost> costs;              // if asked for
-  PassLog passes;                            // what ran, how long, and the text of `emit_pass`
+  PassLog passes;                            // the runs with times, and the text of `emit_pass`
   std::optional<PlanGraph> plan;             // the unrolled control flow
   std::shared_ptr<const PlanFormulas> plan_formulas;  // its formulas, checked; part of `typed`
 };

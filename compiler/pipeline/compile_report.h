@@ -11,19 +11,19 @@
 
 namespace parallax::compiler {
 
-/// What one source text costs: an axiom, an effect axiom, the declaration of a fluent (its frame
+/// Cost of one source text: an axiom, an effect axiom, the declaration of a fluent (its frame
 /// axioms and invariants), a plan step, a state constraint.
 struct AxiomCost {
   base::SourceRange source;
   std::string what;  // the kind of the origin, printed
   /// Instances of its atoms in a full expansion over all sorts, known before grounding; 0 where the
-  /// text is no formula of the model. Stays at the greatest number if it is beyond 64 bits.
+  /// text is no formula of the model. Saturates beyond 64 bits.
   std::uint64_t product = 0;
-  std::int64_t instances = 0;  // that the grounder looked at
+  std::int64_t instances = 0;  // those that the grounder looked at
   std::size_t clauses = 0, literals = 0;
 };
 
-/// One entry for each text, dearest first: by clauses, then instances, then place.
+/// One entry for each text, the most expensive first: by clauses, then instances, then place.
 /// Linear in the model.
 std::vector<AxiomCost> axiom_costs(const GroundModel& ground, const CompiledModel& compiled);
 

@@ -27,8 +27,8 @@ base::Reported malformed(const base::SourceRange& at, const std::string& found,
   return sink.error(codes::kObjectiveForm, at, found);
 }
 
-/// Splits at the commas and the colon that stand in no bracket. What is no token is left to those
-/// who parse the parts.
+/// Splits at the commas and the colon that stand in no bracket. Text that is no token is left to
+/// the parsers of the parts.
 base::Result<std::vector<SumText>> split(const base::SourceRange& range,
                                          const base::SourceFiles& files,
                                          base::DiagnosticSink& sink) {
@@ -78,7 +78,7 @@ base::Result<CheckedSum> check(const SumText& text, TypedModel& model,
                    sink);
 }
 
-/// What the instances of an objective come to: a weight for each formula that is counted.
+/// Grounds the instances of an objective: a weight for each formula that is counted.
 class ObjectiveGrounder {
  public:
   ObjectiveGrounder(const CheckedObjective& objective, GroundModel& model,

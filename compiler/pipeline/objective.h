@@ -9,15 +9,16 @@
 
 namespace parallax::compiler {
 
-/// `count FORMULA`, `sum TERM: FORMULA`, or several of these separated by commas: what is added up.
+/// An objective: `count FORMULA`, `sum TERM: FORMULA`, or several of these separated by commas, to
+/// be added up.
 struct CheckedObjective {
   std::string text;  // on one line
   base::SourceRange source;
   std::vector<CheckedSum> sums;
 };
 
-/// Parses the objective that stands in `range` and checks it against the model, in whose stores it
-/// is afterwards. E1024, and what is wrong with formulas and terms.
+/// Parses the objective that stands in `range` and checks it against the model; it becomes part of
+/// the model's stores. Reports E1024, and errors in formulas and terms.
 base::Result<CheckedObjective> check_objective(const base::SourceRange& range, TypedModel& model,
                                                const base::SourceFiles& files,
                                                base::DiagnosticSink& sink);

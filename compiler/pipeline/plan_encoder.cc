@@ -16,9 +16,9 @@ namespace parallax::compiler {
 
 namespace {
 
-/// What the registers of a plan hold at t + 1, given where control was at t. Every perform that
-/// returns something picks one object that makes its formula true, and the pick has an atom of its
-/// own; a register has exactly one value where the plan goes on to read it, and none elsewhere.
+/// Values of a plan's registers at t + 1, given where control was at t. Every perform that returns
+/// something picks one object that makes its formula true, and the pick has an atom of its own; a
+/// register has exactly one value where the plan goes on to read it, and none elsewhere.
 class RegisterStep {
  public:
   /// All outlive the object.
@@ -35,7 +35,7 @@ class RegisterStep {
   std::optional<FormulaId> success(LocationId id);
   /// To be called behind `success` of the same location: control leaves it under these conditions.
   void leave(LocationId id, FormulaId ok, FormulaId failed, std::uint32_t origin);
-  /// To be called last: nothing but what was said.
+  /// Excludes every value that was not added. To be called last.
   void finish(std::uint32_t origin);
 
  private:
@@ -163,7 +163,7 @@ std::size_t cut_number(const PlanGraph& graph, std::size_t terminal) {
   return number;
 }
 
-/// A register by its name, which stands for what it holds.
+/// The value of an argument; a register gives its name, which stands for the object it holds.
 PlanValue artifact_value(const PlanGraph& graph, const PlanArgument& argument) {
   if (const auto* id = std::get_if<ModelValueId>(&argument)) return graph.values[*id].name;
   if (const auto* text = std::get_if<std::string>(&argument)) return *text;
@@ -211,7 +211,7 @@ class PlanEncoder {
   }
 
  private:
-  /// What a location performs: an event for every reading of the registers it depends on.
+  /// Event that a location performs, one for every reading of the registers it depends on.
   struct Performed {
     PlanRegisters::Reading reading;
     std::uint32_t event = 0;
@@ -283,7 +283,7 @@ class PlanEncoder {
     }
   }
 
-  /// What a branch goes by at t. None: reported.
+  /// Condition of a branch at t. None: reported.
   std::optional<FormulaId> decision(BranchId id, Timepoint t) {
     const auto& branch = graph_.branches[id];
     if (branch.free) {

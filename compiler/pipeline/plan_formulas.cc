@@ -106,7 +106,7 @@ class PlanFormulaChecker {
   }
 
  private:
-  /// What a register holds is what the success formulas of its performs quantify over.
+  /// A register has the sort over which the success formulas of its performs quantify.
   bool find_register_sorts() {
     std::vector<std::optional<SortId>> sorts(graph_.values.size());
     for (const auto& location : graph_.locations) {
@@ -193,8 +193,8 @@ class PlanFormulaChecker {
     }
   }
 
-  /// The formula with its values is nowhere in the user's files, so what is wrong with it is
-  /// reported at the formula it was made from.
+  /// The formula with its values is nowhere in the user's files, so errors are reported at the
+  /// formula it was made from.
   base::Result<CheckedFormula> check_tree(const FormulaTree& formula, base::SourceRange origin) {
     const auto file = files_.add(files_[origin.file].name(), formula.text);
     base::DiagnosticSink own;

@@ -15,16 +15,16 @@ namespace parallax::compiler {
 struct PlanFormula {
   CheckedFormula checked;
   /// The model's variable that stands for each register (`?item1`) of the text. The formula
-  /// quantifies over them; whoever grounds it gives each its value first.
+  /// quantifies over them; give each its value before grounding.
   std::map<ModelValueId, VariableId> registers;
-  /// Of a perform that returns something: the quantified variable that is returned.
+  /// The quantified variable that is returned, for a perform that returns something.
   std::optional<VariableId> returned;
 };
 
 struct PlanFormulas {
   std::vector<PlanFormula> success;    // by location
-  std::vector<PlanFormula> guards;     // by branch; of free ones empty
-  std::vector<SortId> register_sorts;  // by register: what it can hold
+  std::vector<PlanFormula> guards;     // by branch; empty for free ones
+  std::vector<SortId> register_sorts;  // by register
 };
 
 /// The sort of the first argument place at which one of the leaves stands.
@@ -33,8 +33,8 @@ std::optional<SortId> sort_by_use(const TypedModel& model, const FormulaTree& fo
 
 /// Checks success conditions and guards; they become part of the model's stores, so this comes
 /// before grounding. A quantified variable whose name begins with no sort (`exists i.`) has the
-/// sort of the first argument place that it stands at.  Reports at the binding's formula what is
-/// wrong with it, E4001 if it returns a variable that its outermost `{...}` does not bind.
+/// sort of the first argument place that it stands at. Reports errors at the binding's formula,
+/// E4001 if it returns a variable that its outermost `{...}` does not bind.
 base::Result<PlanFormulas> check_plan_formulas(const PlanGraph& graph, TypedModel& model,
                                                base::SourceFiles& files,
                                                base::DiagnosticSink& sink);

@@ -15,17 +15,17 @@
 
 namespace parallax::compiler {
 
-/// The formulas of a plan, to be asked of one observed state: guards of branches, whether a perform
-/// has succeeded, and which objects it can have found. They are written out once for all that
-/// registers can hold; what is asked afterwards changes nothing, so threads may share the object.
+/// Evaluates the formulas of a plan in one observed state: guards of branches, whether a perform
+/// has succeeded, and which objects it can have found. The formulas are expanded once for all
+/// values of the registers. Queries change nothing, so threads may share the object.
 class PlanQuestions {
  public:
-  /// Of the fluent with this number in `fluents()`.
+  /// Value of the fluent with this number in `fluents()`.
   using FluentValue = std::function<bool(std::uint32_t)>;
 
   PlanQuestions(const PlanGraph& graph, const PlanFormulas& formulas, const TypedModel& model);
 
-  /// The formulas have too many instances to be written out: nothing may be asked.
+  /// The formulas have too many instances to be expanded: no query is allowed.
   bool too_large() const { return too_large_; }
   /// "RobotAt(r1)"
   const std::vector<std::string>& fluents() const { return expanded_.fluents(); }
@@ -34,7 +34,7 @@ class PlanQuestions {
   const std::vector<std::string>& predicates() const { return predicates_; }
   void settle(std::size_t predicate, bool value);
 
-  /// What an answer depends on. `one_state`: on fluents of one timepoint and predicates alone.
+  /// Inputs that an answer depends on. `one_state`: fluents of one timepoint and predicates alone.
   struct Needs {
     bool one_state = true;
     std::vector<std::uint32_t> fluents;  // ascending
@@ -42,21 +42,22 @@ class PlanQuestions {
   const Needs& of_guard(BranchId branch) const { return guards_[branch.index()].needs; }
   const Needs& of_success(LocationId location) const { return success_[location.index()].needs; }
 
-  /// Does the guard of the branch, which is no free one, hold?
+  /// Does the guard of the branch hold? The branch must not be a free one.
   bool holds(BranchId branch, const RegisterObjects& registers, const FluentValue& fluent) const;
   /// Does the success formula of a perform hold in the state that its binding names?
   bool succeeds(LocationId location, const RegisterObjects& registers,
                 const FluentValue& fluent) const;
-  /// Of one that returns something: the objects for which it holds, in the order of their
-  /// declaration.
+  /// Objects for which the success formula holds, in the order of their declaration. Only for a
+  /// perform that returns something.
   std::vector<std::string> found(LocationId location, const RegisterObjects& registers,
                                  const FluentValue& fluent) const;
 
  private:
   struct Question {
     std::vector<ModelValueId> registers;
-    std::vector<std::string> objects;  // that can be found
-    /// What the registers hold, then the object that is found; formulas that do not exist lack.
+    std::vector<std::string> objects;  // candidates for the result
+    /// By the objects in the registers, followed by the object that is found. Formulas that do not
+    /// exist are absent.
     std::map<std::vector<std::string>, FormulaTrees::Node> formulas;
     Needs needs;
   };

@@ -12,8 +12,8 @@ namespace parallax::compiler {
 /// May temporal operators stand in them?
 enum class Constraints : std::uint8_t { kStates, kTraces };
 
-/// Checks them against the model, in whose stores they are afterwards. Reports what is wrong with
-/// any of them at its place.
+/// Checks the constraints against the model; they become part of the model's stores. Reports the
+/// errors of each at its place.
 base::Result<std::vector<StateConstraint>> check_constraints(
     const std::vector<ConstraintText>& constraints, Constraints about, TypedModel& model,
     const base::SourceFiles& files, base::DiagnosticSink& sink);

@@ -150,7 +150,7 @@ bool TemporalAutomaton::speaks(Number number, Timepoint t) const {
                     : std::all_of(node.children.begin(), node.children.end(), says);
 }
 
-/// Of a trace that goes on after t; the node says something there.
+/// Expands a goal for a trace that goes on after t. The node must have a value there.
 TemporalAutomaton::Choices TemporalAutomaton::expand(Goal goal, Timepoint t) {
   if (const auto known = expanded_.find(goal); known != expanded_.end()) return known->second;
   const auto& node = tree_[goal / 2];
@@ -238,7 +238,7 @@ void TemporalAutomaton::prune(Choices& choices) const {
   }
 }
 
-/// Of a trace that ends at t; the node says something there.
+/// Value of a goal for a trace that ends at t. The node must have a value there.
 FormulaId TemporalAutomaton::at_end(Goal goal, Timepoint t) const {
   const auto& node = tree_[goal / 2];
   const bool negated = goal % 2 != 0;

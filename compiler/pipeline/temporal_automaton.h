@@ -11,42 +11,43 @@
 
 namespace parallax::compiler {
 
-/// What a node of a temporal formula says at each timepoint; none where it names what does not
-/// exist.
+/// Values of a node of a temporal formula at each timepoint; none where the node names something
+/// that does not exist.
 struct TemporalValues {
   using Value = std::optional<FormulaId>;
   using Values = std::vector<Value>;  // by timepoint
-  Values ends;                        // of traces that end here
-  Values surely;                      // of those that may end or go on: whatever happens here
-  Values goes_on;                     // up to the timepoint before the horizon
+  Values ends;                        // for traces that end here
+  Values surely;                      // for traces that end here or go on: true in either case
+  Values goes_on;                     // for traces that go on; up to the horizon - 1
 };
 
-/// Which beginnings of a trace fulfil a formula, for all ends at once. Forwards: a state is what
-/// remains to be fulfilled from the next timepoint on, and all states that the trace so far allows
-/// are followed together (an alternating automaton made deterministic, one variable for each state
-/// and timepoint). Linear in the horizon; exponential in the operators at worst.
+/// Decides which prefixes of a trace fulfil a formula, for all ends at once. It runs forwards: a
+/// state is the set of goals that remain from the next timepoint on, and all states that the trace
+/// so far allows are followed together (an alternating automaton made deterministic, one variable
+/// for each state and timepoint). Linear in the horizon; exponential in the operators at worst.
 class TemporalAutomaton {
  public:
   using Number = TemporalTree::Number;
   using Values = TemporalValues::Values;
 
-  /// `values` of what only looks back; all outlive the automaton.
+  /// `values` are those of the nodes that only look back. All arguments outlive the automaton.
   TemporalAutomaton(const TemporalTree& tree, const std::vector<TemporalValues>& values,
                     FormulaStore& formulas, Timepoint horizon);
 
-  /// Of the node or its negation. False: more than `most` steps, or a node that it does not take:
-  /// an operator about the past around one about later timepoints, or `next` before what names a
-  /// timepoint before 0 there.
+  /// Builds the automaton of a node or its negation. Returns false if it takes more than `most`
+  /// steps, or for a node that it does not support: an operator about the past around one about
+  /// later timepoints, or `next` before a part that names a timepoint before 0 there.
   bool build(Number root, bool negated, std::size_t most);
   std::size_t size() const { return size_; }
-  /// By n: the trace from 0 to n fulfils what was built. `name` gives an atom for a formula.
+  /// By n: the trace from 0 to n fulfils the formula that was built. `name` gives an atom for a
+  /// formula.
   Values values(const std::function<FormulaId(FormulaId)>& name) const;
 
  private:
   using Kind = TemporalTree::Kind;
-  using Goal = std::uint32_t;                  // a node's number twice, and 1 for its negation
-  using Goals = std::vector<Goal>;             // all of them; ascending
-  using Choices = std::map<Goals, FormulaId>;  // what remains, and under which condition
+  using Goal = std::uint32_t;                  // twice the node's number, plus 1 for its negation
+  using Goals = std::vector<Goal>;             // a conjunction; ascending
+  using Choices = std::map<Goals, FormulaId>;  // remaining goals, and under which condition
   struct Step {
     Goals from, to;
     FormulaId guard;

@@ -60,8 +60,8 @@ std::optional<TemporalEncoder::Values> TemporalEncoder::fulfilled(Number part) {
   return out;
 }
 
-/// The smaller one of those of the formula and of its negation. None: both are larger than one
-/// formula for each end is, and than what is small in any case.
+/// Values by the smaller automaton, of the formula or of its negation. None: both are larger than
+/// one formula for each end, and larger than a size that is small in any case.
 std::optional<TemporalEncoder::Values> TemporalEncoder::by_automaton(Number part) {
   constexpr std::size_t kSmall = 64;  // steps for each timepoint
   const auto size = static_cast<std::size_t>(model_.horizon()) + 1;
@@ -160,8 +160,8 @@ bool TemporalEncoder::looks_ahead(FormulaId formula, Timepoint t) const {
                      [&](std::int32_t variable) { return model_.atom(variable).time > t; });
 }
 
-/// The formula where t is the last timepoint: nothing happens there, or what happens is not known
-/// and the formula true in any case.
+/// The formula where t is the last timepoint: nothing happens there, or its events are not known
+/// and the formula is true in any case.
 FormulaId TemporalEncoder::at_last(FormulaId root, Timepoint t, bool nothing_happens) const {
   const auto is_event = [&](std::int32_t variable) {
     const auto& atom = model_.atom(variable);
@@ -215,8 +215,8 @@ void TemporalEncoder::settle_past(Number number) {
   }
 }
 
-/// Of a node that is no leaf and not about later timepoints: `column` says what its children are at
-/// t. Their past is over, so there they went on.
+/// Value of an inner node that is not about later timepoints. `column` gives its children's values
+/// at t; at earlier timepoints the trace went on.
 TemporalEncoder::Value TemporalEncoder::past(Number number, Timepoint t,
                                              const Values Node::*column) {
   const auto& node = tree_[number];
@@ -301,7 +301,8 @@ void TemporalEncoder::settle_future(const View& view) {
   }
 }
 
-/// Of a trace that ends at t. Where it is not complete, only what is true in any case counts.
+/// Value of a node for a trace that ends at t. If the trace is not complete, only what is true in
+/// any case counts.
 TemporalEncoder::Value TemporalEncoder::end_value(Number number, Timepoint t,
                                                   const View& view) const {
   const auto& node = nodes_[number];
@@ -423,7 +424,8 @@ TemporalEncoder::Value TemporalEncoder::any(Number number, Timepoint t, const Vi
   return value;
 }
 
-/// The formula, or an atom that is defined to be it: what is built of it stays small.
+/// The formula, or an atom defined as equivalent to it, which keeps the formulas built from it
+/// small.
 TemporalEncoder::Value TemporalEncoder::named(Value value) {
   if (!value || formulas_.kind(*value) != FormulaNodeKind::kAnd) return value;
   const auto [known, added] = names_.try_emplace(*value);

@@ -76,7 +76,7 @@ class TemporalEncoder {
   FormulaStore& formulas_;
   TemporalTree tree_;
   std::vector<Node> nodes_;     // by number
-  std::vector<Number> wanted_;  // what the root is made of, ascending
+  std::vector<Number> wanted_;  // parts of the root, ascending
   std::map<FormulaId, FormulaId> names_;
   std::map<std::pair<Number, Timepoint>, Value> any_;  // of the view at hand
 };

@@ -42,7 +42,7 @@ class TemporalTree {
     Kind kind = Kind::kLeaf;
     bool negated = false;    // kLeaf
     bool looks_on = false;   // an operator about later timepoints is in it
-    TypedFormulaId formula;  // what it was made of
+    TypedFormulaId formula;  // the formula it was made from
     Number binding = 0;      // kLeaf
     std::vector<Number> children;
   };

@@ -20,10 +20,10 @@ struct BindingText {
 /// separating `;`.
 BindingText clean_binding(std::string_view file);
 
-/// A parameter `?x` at the start of `text`: its length, 0 if there is none.
+/// Length of a parameter `?x` at the start of `text`; 0 if there is none.
 std::size_t variable_length(std::string_view text);
 
-/// Reads the words of one entry after the other. What should stand there and does not is E4001.
+/// Reads the words of one entry after the other. Anything unexpected is E4001.
 class BindingCursor {
  public:
   BindingCursor(std::string_view file_text, base::FileId file, base::DiagnosticSink& sink)
@@ -31,7 +31,7 @@ class BindingCursor {
 
   const std::string& text() const { return cleaned_.text; }
   std::size_t entries() const { return cleaned_.entries.size(); }
-  /// Goes to an entry; `kPreamble` is what stands before the first one.
+  /// Goes to an entry; `kPreamble` is the text before the first one.
   static constexpr std::size_t kPreamble = static_cast<std::size_t>(-1);
   void enter(std::size_t entry);
 
@@ -39,7 +39,7 @@ class BindingCursor {
   bool at_end() const { return i_ == end_; }
   char peek() const { return text()[i_]; }
   void advance(std::size_t count = 1) { i_ += count; }
-  /// What is left of the entry.
+  /// The rest of the entry.
   std::string_view rest() const { return std::string_view(text()).substr(i_, end_ - i_); }
   base::SourceRange range(std::size_t begin, std::size_t end) const {
     return {file_, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};

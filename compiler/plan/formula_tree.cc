@@ -278,8 +278,8 @@ FormulaTree with_leaves(const FormulaTree& tree, const LeafValue& value) {
   FormulaTree out;
   out.variables = tree.variables;
   out.parameters = tree.parameters;
-  // Leaves come in the order of the text, so it is copied up to each of them; what stands between
-  // two of them moves together. A node comes behind its leaves: both its ends are known by then.
+  // Leaves come in the order of the text, so it is copied up to each of them; the text between two
+  // of them moves together. A node comes behind its leaves: both its ends are known then.
   struct Move {
     std::uint32_t from = 0;
     std::uint32_t to = 0;

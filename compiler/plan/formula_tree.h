@@ -23,12 +23,12 @@ struct ModelValueTag {
 };
 using ModelValueId = base::Id<ModelValueTag>;
 
-/// What a leaf of a formula stands for. It is settled once, when the formula is made: no name that
-/// comes into the formula later is taken for a variable that happens to be called the same.
+/// Meaning of a leaf of a formula. It is fixed when the formula is made, so that a name substituted
+/// later cannot be captured by a variable of the same name.
 enum class LeafKind : std::uint8_t {
-  kName,       // what the model calls so: a constant, a number, `time`
-  kVariable,   // of a quantifier of the formula; `number`: which of `variables`
-  kParameter,  // of the binding table; `number`: which of `parameters`
+  kName,       // a name of the model: a constant, a number, `time`
+  kVariable,   // a quantifier's variable; `number`: index into `variables`
+  kParameter,  // a parameter of the binding table; `number`: index into `parameters`
   kRegister,   // a value that the model determines; `number`: index of its ModelValueId
 };
 
@@ -83,7 +83,7 @@ FormulaTree disjunction(std::span<const FormulaTree> formulas);
 /// `{i,j} (body)` over names that the body has as leaves.
 FormulaTree exists(std::span<const std::string> names, const FormulaTree& body);
 
-/// The formula with some leaves replaced; none: the leaf stays. What comes in is a term without
+/// The formula with some leaves replaced; none: the leaf stays. A replacement is a term without
 /// variables and parameters.
 using LeafValue = std::function<std::optional<FormulaTree>(const FormulaNode&)>;
 FormulaTree with_leaves(const FormulaTree& tree, const LeafValue& value);

@@ -31,12 +31,12 @@ struct BindingKey {
 
 /// `on REASON CLASS`: a failure for this reason raises this condition where the plan is executed.
 struct FailureReason {
-  std::string reason;  // the word in front of the first colon of what the simulator says
+  std::string reason;  // the word before the first colon of the simulator's message
   std::string failure_class;
   base::SourceRange source;
 };
 
-/// What one kind of perform means in the model.
+/// Meaning of one kind of perform in the model.
 struct BindingEntry {
   PerformKind kind = PerformKind::kMotion;
   std::string type;
@@ -55,7 +55,7 @@ struct BindingEntry {
   base::SourceRange failure_source;
 };
 
-/// What a question of the plan means: (prolog '(name argument...)).
+/// Meaning of a plan's query: (prolog '(name argument...)).
 struct QueryBinding {
   std::string name;
   std::vector<std::string> variables;
@@ -75,7 +75,7 @@ struct ObjectBinding {
   base::SourceRange failure_source;
 };
 
-/// The binding table: what the designators of a plan mean in the model.
+/// The binding table: the meaning of a plan's designators in the model.
 struct PlanBinding {
   std::vector<BindingEntry> entries;   // in source order, aliases expanded
   std::vector<QueryBinding> queries;   // in source order

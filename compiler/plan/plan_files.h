@@ -20,9 +20,9 @@ struct PlanPath {
 
 /// Reads the files of a plan in the order in which Lisp would load them. A folder stands for the
 /// files that its system definition (`.asd`) names, in that order; without one for its `.lisp`
-/// files by name (W-ORDER, if there are several). Of several definitions the one that is called
-/// like the folder counts. What definitions name, and what links lead to, must be admitted by
-/// `gate`. A file that stands twice, a folder without plan and more than kMaxPlanFiles are CPL062.
+/// files by name (W-ORDER, if there are several). Of several definitions the one named like the
+/// folder counts. Files that definitions name, and targets of links, must be admitted by `gate`. A
+/// file that stands twice, a folder without plan and more than kMaxPlanFiles are CPL062.
 base::Result<std::vector<base::FileId>> load_plan_files(std::span<const PlanPath> paths,
                                                         const base::PathGate& gate,
                                                         base::SourceFiles& files,

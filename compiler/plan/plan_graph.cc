@@ -221,7 +221,7 @@ std::string dump_dot(const PlanGraph& graph, const base::SourceFiles& files) {
 std::optional<std::int64_t> shortest_path(const PlanGraph& graph) {
   const auto count = graph.locations.size() + graph.branches.size() + graph.terminals.size();
   std::vector<bool> seen(count, false);
-  // Branches cost nothing: what they lead to joins the present layer.
+  // Branches cost nothing: their targets join the present layer.
   std::vector<std::size_t> layer = {node_of(graph, graph.entry)}, next;
   for (std::int64_t performs = 0; !layer.empty(); ++performs) {
     next.clear();

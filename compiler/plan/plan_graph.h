@@ -49,8 +49,9 @@ struct PlanTerminal {
   std::optional<base::SourceRange> source;  // kBound: the form that was cut
 };
 
-/// What tells success from failure of a perform at timepoint t. The outcome is never free:
-/// control goes on at t+1 along `on_success` where the formula holds, along `on_failure` elsewhere.
+/// Condition that separates success from failure of a perform at timepoint t. The outcome is never
+/// free: control goes on at t+1 along `on_success` where the formula holds, along `on_failure`
+/// elsewhere.
 struct SuccessCondition {
   /// All parameters and mapping functions have their values: atoms are fluents or predicates over
   /// constants and registers (`RobotAt(r2)`), connectives as in a model.
@@ -60,7 +61,7 @@ struct SuccessCondition {
 };
 
 /// A designator's argument for a controller: metres, radians, counts or names; a register stands
-/// for the name of what it holds.
+/// for the name of the object it holds.
 using PlanArgument = std::variant<double, std::int64_t, std::string, ModelValueId>;
 /// Sorted by name. A pose under key `target` gives target.x, target.y, target.z [m] and target.yaw
 /// [rad]; a named object under `object` gives `object`.
@@ -90,8 +91,8 @@ struct PlanLocation {
   PlanTarget on_failure;
 };
 
-/// A register for a value that only the model determines: what the success formula of the locations
-/// that bind it quantifies over. It keeps what was found last; a plan that still knows an earlier
+/// A register for a value that only the model determines: the success formulas of the locations
+/// that bind it quantify over it. It keeps the value found last; a plan that still knows an earlier
 /// value binds the next one in another register.
 struct ModelValue {
   std::string name;      // unique, starts with `?`: "?i1"
@@ -115,10 +116,10 @@ struct PlanBranch {
 struct PlanHandler {
   std::vector<std::string> failure_classes;
   base::SourceRange source;
-  std::vector<LocationId> failures;  // what it takes up: these performs, failing; sorted
-  /// Of those that fail by reason: the way, a place in their `failures`; sorted.
+  std::vector<LocationId> failures;  // performs whose failure it handles; sorted
+  /// The ways handled for performs that fail by reason, each a place in their `failures`; sorted.
   std::vector<std::pair<LocationId, std::size_t>> ways;
-  bool otherwise = false;  // failures that the plan itself signals or hands on as well
+  bool otherwise = false;  // also handles failures that the plan itself signals or hands on
 };
 
 struct PlanGraph {
@@ -164,9 +165,9 @@ using RegisterSet = std::set<ModelValueId>;
 struct PlanLiveness {
   std::vector<RegisterSet> locations;
   std::vector<RegisterSet> branches;
-  /// Of a place that control goes to.
+  /// The registers read from a place that control goes to.
   const RegisterSet& at(const PlanTarget& target) const;
-  /// On the way behind a location.
+  /// The registers read after a location.
   const RegisterSet& behind(const PlanLocation& location, bool success) const {
     return at(success ? location.on_success : location.on_failure);
   }
@@ -178,8 +179,8 @@ PlanLiveness plan_liveness(const PlanGraph& graph);
 
 /// For every location: the earlier attempts that it repeats, sorted. An attempt is a location of
 /// the same perform form with the same event, behind whose failure the location can come; itself
-/// too, where control can return. Looks at no more than `max_visits` places; what comes after that
-/// repeats nothing.
+/// too, where control can return. Visits at most `max_visits` places; locations beyond that repeat
+/// nothing.
 std::vector<std::vector<LocationId>> earlier_attempts(const PlanGraph& graph,
                                                       std::size_t max_visits = 20'000'000);
 

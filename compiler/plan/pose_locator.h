@@ -45,7 +45,7 @@ class PoseLocator {
   }
 };
 
-/// Of a model without regions: no pose lies in one.
+/// Locator for a model without regions: no pose lies in one.
 class NoRegions final : public PoseLocator {
  public:
   std::optional<std::string> region_of(std::string_view, const Pose&) const override {

@@ -13,7 +13,7 @@
 
 namespace parallax::compiler {
 
-/// What the naive expansion may cost. Once overdrawn it stays so, and all work ends soon.
+/// Budget of the naive expansion. Once overdrawn it stays so, and all work ends soon.
 class ReferenceBudget {
  public:
   /// `stop`, if there is one, outlives the budget: once raised, all is spent.
@@ -101,20 +101,20 @@ class FormulaTrees {
 
   /// The conjuncts of a conjunction, else the node itself.
   std::vector<Node> conjuncts(Node node) const;
-  /// The atoms below a node, ascending, each once; effects are none of them.
+  /// The atoms below a node, ascending, each once; effects are not included.
   std::vector<std::uint32_t> atoms_of(Node node) const;
   /// The effects below a node that count for it (against it: `negative`), ascending, each once.
   std::vector<std::uint32_t> effects_of(Node node, bool negative) const;
 
-  /// What the effects in a formula are: those that count for the formula, those that count against
-  /// it.
+  /// Values of the effects in a formula: of those that count for the formula, and of those that
+  /// count against it.
   struct Effects {
     const Values* positive = nullptr;
     const Values* negative = nullptr;
   };
   /// The truth value where values[a] tells whether atom a is true. As deep as the tree.
   bool value(Node node, const Values& values, const Effects& effects) const;
-  /// Of a tree without effects.
+  /// The truth value of a tree without effects.
   bool value(Node node, const Values& values) const { return value(node, values, {}); }
 
  private:
@@ -140,8 +140,8 @@ struct ReferenceFormula {
 /// A typed model with every instance of every formula written out. A formula without quantifiers
 /// exists if all its atoms and comparisons do; `[x] f` and `{x} f` are the conjunction and the
 /// disjunction of the instances that exist, and exist themselves unless all of at least one
-/// instance do not. Nothing is joined, solved, shared or replicated: that is the grounder's art,
-/// and this is what it is held against.
+/// instance do not. Nothing is joined, solved, shared or replicated as in the grounder, which is
+/// tested against this expansion.
 ///
 /// Atoms are numbered by timepoint: HoldsAt of every fluent, ReleasedAt of every fluent, and before
 /// the last timepoint Happens of every event; then the atoms of user predicates as they are met.

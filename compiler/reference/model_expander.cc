@@ -114,7 +114,7 @@ void ModelExpander::expand_effects() {
   measure_effects();
 }
 
-/// What an effect in a condition needs, the condition needs.
+/// Computes the horizon that each effect needs: a condition needs those of the effects in it.
 void ModelExpander::measure_effects() {
   for (auto& effect : out_.effects_) effect.needed = effect.time + 1;
   for (bool grown = !out_.effects_.empty(); grown;) {
@@ -224,7 +224,8 @@ std::vector<std::uint32_t> ModelExpander::atoms_of(SymbolId predicate) const {
   return atoms;
 }
 
-/// What is defined over effects (Clipped, ECCausal) is no reason of what defines it.
+/// Is the formula a definition? One over effects (Clipped, ECCausal) gives no reason for the
+/// predicates that define it.
 bool ModelExpander::is_definition(TypedFormulaId id) const {
   const auto& formula = model_.formulas[id];
   return formula.kind == FormulaKind::kForall ? is_definition(formula.children[0])
@@ -276,7 +277,7 @@ std::optional<ModelExpander::Node> ModelExpander::expand(TypedFormulaId id) {
     case FormulaKind::kTemporal:
       return std::nullopt;  // TemporalTruth takes these apart
   }
-  // What became a constant, or nothing, needs its parts no more.
+  // The parts of a formula that became a constant, or nothing, are not needed any more.
   if (!node || *node == FormulaTrees::kTruth || *node == FormulaTrees::kFalsity) {
     out_.trees_.rewind(before);
   }

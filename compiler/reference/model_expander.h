@@ -24,10 +24,10 @@ class ModelExpander {
   using Node = FormulaTrees::Node;
   /// Instead of `run`: numbers the atoms alone, for `instance`.
   void begin();
-  /// What a variable stands for in the formulas expanded from now on, also where one binds it; none
-  /// of its sort has that name: false.
+  /// Fixes the object that a variable stands for in the formulas expanded from now on, also where
+  /// one binds it. False if its sort has no object of that name.
   bool bind(VariableId variable, const std::string& value);
-  /// What it can stand for.
+  /// The objects that a variable can stand for.
   std::vector<std::string> values(VariableId variable) const;
   /// From now on nothing happens at the last timepoint; before, such events do not exist.
   void end_events() { events_end_ = true; }

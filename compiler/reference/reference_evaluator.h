@@ -43,8 +43,8 @@ class ReferenceSearch {
   /// reasons of completed atoms.
   void run(std::size_t limit, std::int64_t max_reasons);
   const std::vector<ReferenceFinding>& found() const { return found_; }
-  /// The effect axioms, as indices into the typed model's, of which some instance's event happened
-  /// while its condition held.
+  /// Effect axioms with an instance whose event happened while its condition held, as indices into
+  /// the typed model's.
   std::set<std::size_t> fired_effects() const;
   bool finished() const { return finished_; }
 
@@ -58,8 +58,8 @@ class ReferenceSearch {
   }
   bool is_true(std::uint32_t atom) const { return values_[atom] != 0; }
   Truth value(const ReferenceFormula& formula) const;
-  /// The effects that the rows bring about where conditions take those of `absent` for what they
-  /// deny: rows are added until nothing new follows.
+  /// The least effects of the rows, where conditions read the effects that they deny from `absent`:
+  /// rows are added until nothing new follows.
   Values least_effects(const Values& absent) const;
   /// Does an event change the fluent this way at t?
   Truth changed(EffectKind kind, std::uint32_t fluent, std::int64_t t) const;
@@ -85,8 +85,8 @@ class ReferenceSearch {
 };
 
 /// The true atoms of a trace: by timepoint for the event calculus, without for user predicates.
-/// `holds.size() - 1` is the trace's last timepoint; before the model's horizon, only what the
-/// model says of these timepoints alone is checked.
+/// `holds.size() - 1` is the trace's last timepoint; before the model's horizon, only axioms about
+/// these timepoints alone are checked.
 struct Valuation {
   std::vector<std::set<std::string>> holds, happens, released;
   std::set<std::string> predicates;

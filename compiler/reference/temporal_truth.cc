@@ -189,7 +189,7 @@ TemporalBreak TemporalTruth::why_false(TypedFormulaId formula, std::int64_t t,
   }
 }
 
-/// Goes on to the part that decides, or says what is wrong with the formula itself.
+/// Goes on to the part that decides, or describes why the formula itself is false.
 std::optional<TemporalBreak> TemporalTruth::step(TypedFormulaId& id, std::int64_t& t) {
   const auto& formula = model_.formulas[id];
   const auto here = [&](std::string text, std::int64_t at) {

@@ -14,17 +14,17 @@ namespace parallax::compiler {
 /// Does no operator about later timepoints stand in the formula?
 bool only_looks_back(const TypedModel& model, TypedFormulaId formula);
 
-/// What decides that a formula is false of a trace, at the timepoint that one would look at.
+/// Part of a formula that makes it false of a trace, at the timepoint where one would look.
 struct TemporalBreak {
   base::SourceRange formula;  // a part of it
   std::int64_t at = 0;
   std::string text;  // "does not hold at timepoint 3"
 };
 
-/// Is a temporal formula true of a trace? Worked out from the definitions, timepoint by timepoint.
-/// Shares nothing with the encoding into clauses; it is its oracle. Nothing happens at the last
-/// timepoint of a trace. What a formula says is missing where a state formula in it names a
-/// timepoint that does not exist: `always`, `until` and quantifiers leave such instances out.
+/// Evaluates a temporal formula on a trace, timepoint by timepoint from the definitions. Shares
+/// nothing with the encoding into clauses; it is its oracle. Nothing happens at the last timepoint
+/// of a trace. A formula has no value where a state formula in it names a timepoint that does not
+/// exist: `always`, `until` and quantifiers leave such instances out.
 class TemporalTruth {
  public:
   /// A value is missing where the formula names what does not exist.
@@ -34,7 +34,7 @@ class TemporalTruth {
   /// asked are in its stores.
   TemporalTruth(const TypedModel& model, const ReferenceLimits& limits = {});
 
-  /// Why nothing may be asked, or why what was asked last has no answer.
+  /// Why no formula may be evaluated, or why the last one has no value.
   std::optional<std::string> refusal() const;
   /// At every timepoint of the trace. `time`: the formula's free variable, if it has one.
   Values values(TypedFormulaId formula, std::optional<VariableId> time, const Valuation& trace);

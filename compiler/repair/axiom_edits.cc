@@ -8,7 +8,7 @@
 namespace parallax::compiler {
 namespace {
 
-/// What may be wrong with an axiom that there is.
+/// Edits of an existing axiom that may be wrong.
 class AxiomEdits {
  public:
   AxiomEdits(const EditSubject& subject, std::vector<Edit>& out) : subject_(subject), out_(out) {}
@@ -169,9 +169,10 @@ class AxiomEdits {
     }
   }
 
-  /// What an effect that is wrong may be about instead: fluents that differed, and such that may
-  /// not have shown, of which the event has no axiom of that kind: those that some axiom releases,
-  /// so that the model follows them anyway, and those that it changed in some run all the same.
+  /// Fluents that a wrong effect may be about instead: those that differed, and hidden ones for
+  /// which the event has no axiom of that kind. Hidden are fluents that some axiom releases, so
+  /// that the model follows them anyway, and fluents that the event changed in some run all the
+  /// same.
   std::set<std::string> fluents_for(const std::string& event, const std::string& kind) const {
     auto out = subject_.fluents;
     if (kind == "Releases") return out;

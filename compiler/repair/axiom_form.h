@@ -20,17 +20,16 @@ struct TextChange {
   friend bool operator==(const TextChange&, const TextChange&) = default;
 };
 
-/// A formula of a model whose parts an edit can name: effects of one event,
-/// `[variables] condition -> Initiates(E,F,time) & ...`, or what an event needs,
-/// `[variables] Happens(E,time) & ... -> ...`. Of other formulas no more than the condition is
-/// read.
+/// A formula of a model whose parts an edit can name: effects of one event, `[variables] condition
+/// -> Initiates(E,F,time) & ...`, or a precondition of an event, `[variables] Happens(E,time) & ...
+/// -> ...`. Of other formulas only the condition is read.
 struct AxiomForm {
   enum class Kind : std::uint8_t { kEffects, kPrecondition, kOther };
   Kind kind = Kind::kEffects;
   ModelAst::Place place;
   std::uint32_t begin = 0, end = 0;    // of its text, with label and period
   std::vector<std::string> variables;  // universally quantified
-  std::optional<NodeId> condition;     // what stands in front of `->`
+  std::optional<NodeId> condition;     // the formula in front of `->`
   std::vector<NodeId> conjuncts;       // of the condition
   NodeId head;
   std::vector<NodeId> effects;  // kEffects: the conjuncts of the head

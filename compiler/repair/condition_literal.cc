@@ -8,7 +8,7 @@ namespace {
 using Arguments = std::vector<LiteralArgument>;
 using Kind = LiteralArgument::Kind;
 
-/// What can stand at a place of this sort.
+/// Arguments that can stand at a place of this sort.
 Arguments choices(const TypedModel& model, SortId sort,
                   const std::vector<SortedVariable>& variables, bool constants) {
   Arguments out;
@@ -122,7 +122,7 @@ namespace {
 struct NarrowLiteral {
   ConditionLiteral literal;
   std::string quantified, equations;  // "drawer", "drawer=place"
-  std::vector<std::string> names;     // that are taken
+  std::vector<std::string> names;     // names that are taken
 };
 
 NarrowLiteral narrowed(const ConditionLiteral& literal, const TypedModel& model,
@@ -251,7 +251,7 @@ std::vector<ConditionLiteral> condition_literals(const TypedModel& model,
       return sort && std::find(symbol.arguments.begin(), symbol.arguments.end(), *sort) !=
                          symbol.arguments.end();
     };
-    // Predicates of the calculus, and those about timepoints, are not what a condition lacks.
+    // Predicates of the calculus, and those about timepoints, are never missing conditions.
     if (uses(model.core.time) || uses(model.core.event) || uses(model.core.fluent)) continue;
     add_symbol(model, symbol, symbol.arguments, variables, most_each, out);
   }

@@ -16,43 +16,43 @@ namespace parallax::compiler {
 struct LiteralArgument {
   enum class Kind : std::uint8_t { kVariable, kConstant, kSome };
   Kind kind = Kind::kVariable;
-  std::string name;  // of a variable or constant, or of the sort
+  std::string name;  // name of the variable or constant, or of the sort
   friend bool operator==(const LiteralArgument&, const LiteralArgument&) = default;
 };
 
-/// What an edit may add to a condition: a fluent at the event's time, a predicate without time, or
-/// an equation, each perhaps negated.
+/// Literal that an edit may add to a condition: a fluent at the event's time, a predicate without
+/// time, or an equation, each perhaps negated.
 struct ConditionLiteral {
   enum class Kind : std::uint8_t { kFluent, kPredicate, kEqual };
   Kind kind = Kind::kFluent;
   bool negated = false;
-  std::string symbol;  // of a fluent or predicate
+  std::string symbol;  // for a fluent or predicate
   std::vector<LiteralArgument> arguments;
   friend bool operator==(const ConditionLiteral&, const ConditionLiteral&) = default;
 
   std::size_t count(LiteralArgument::Kind of) const;
 };
 
-/// As the language writes it; `time` is the name of the variable. Quantified variables are called
-/// by their sort, with a digit where `taken` has the name.
+/// The literal as the language writes it; `time` is the name of the variable. Quantified variables
+/// are named after their sort, with a digit where `taken` has the name.
 std::string print(const ConditionLiteral& literal, const std::string& time,
                   const std::vector<std::string>& taken);
 
-/// The same for an axiom that speaks of more than the literal's symbol does: where a variable of
-/// `taken` has a value outside of the symbol's sort there, it is false. A literal by itself has no
+/// The same for an axiom about more than the literal's symbol covers: where a variable of `taken`
+/// has a value outside of the symbol's sort, the formula is false. A literal by itself has no
 /// instance there, and with it the whole axiom has none.
 std::string print_everywhere(const ConditionLiteral& literal, const TypedModel& model,
                              const std::string& time, const std::vector<std::string>& taken);
 
-/// That each variable has a value there; empty: it always has one.
+/// Condition that each variable has a value in the symbol's sorts; empty: it always has one.
 std::string typing_of(const ConditionLiteral& literal, const TypedModel& model,
                       const std::vector<std::string>& taken);
 
 /// The literal with other names for its variables: terms of the axiom that it is put into.
 ConditionLiteral renamed(ConditionLiteral literal, const std::map<std::string, std::string>& names);
 
-/// The printed atoms of which the literal is about one, "F(a,b)" or "F(a,*)": a place that is open
-/// is `*`, as is a variable without a value. Of an equation: empty.
+/// Pattern of the printed atoms that the literal is about, "F(a,b)" or "F(a,*)": an open place is
+/// `*`, as is a variable without a value. Empty for an equation.
 std::string atom_pattern(const ConditionLiteral& literal,
                          const std::map<std::string, std::string>& values);
 
@@ -64,7 +64,8 @@ struct SortedVariable {
   std::string name;
   SortId sort;
 };
-/// Its sort is its name without the trailing digits. None: there is no such sort.
+/// Sort that a variable's name gives: the name without trailing digits. None: there is no such
+/// sort.
 std::optional<SortId> sort_of_variable(const TypedModel& model, std::string_view name);
 /// Names for variables of these sorts: "base", "item1", "item2".
 std::vector<std::string> variables_for(const TypedModel& model, const std::vector<SortId>& sorts);

@@ -31,7 +31,7 @@ std::string at_time(const std::string& formula, const std::string& time,
   return out;
 }
 
-/// Variables for the arguments of an event that are none of `taken`.
+/// Variables for the arguments of an event, under names that are not in `taken`.
 std::vector<std::string> fresh_variables(const TypedModel& typed, const std::vector<SortId>& sorts,
                                          std::vector<std::string> taken) {
   std::vector<std::string> out;

@@ -15,7 +15,7 @@
 
 namespace parallax::compiler {
 
-/// One thing that may be wrong with a model, and what to do about it.
+/// One possible mistake in a model, and its correction.
 struct Edit {
   enum class Kind : std::uint8_t {
     kNarrow,         // `literal`, or else `text`, is added to the condition of the axiom
@@ -49,20 +49,20 @@ struct Edit {
   std::string words;                    // kAddEffect of several effects: "ends `F` and begins `G`"
   std::vector<Sentence> sentences;      // kDelay
   bool names_constants = false;         // kAddEffect: in the place of variables
-  /// How far it is from what people write and forget: constants where a variable would do, a
+  /// Distance from what people usually write and forget: constants where a variable would do, a
   /// condition that no other axiom of the event has. Smaller is tried first among equals.
   int oddity = 0;
 };
 
-/// What the edits are to be about: the steps at which runs and model parted.
+/// Scope of the edits: the steps at which runs and model parted.
 struct EditScope {
   struct Step {
     std::string event;                      // "Go(bTable)"
     bool refused = false;                   // the world did not do it
-    bool not_possible = false;              // and says that it cannot happen
-    std::map<std::string, bool> before;     // the fluents that were observed in front of it
-    std::map<std::string, bool> differing;  // observed behind it, unlike the model
-    /// Those of `differing` that became as the model says `by` steps later, behind that event.
+    bool not_possible = false;              // and the world says that it cannot happen
+    std::map<std::string, bool> before;     // fluents observed before it
+    std::map<std::string, bool> differing;  // fluents observed after it, unlike the model
+    /// Fluents of `differing` that took the model's value `by` steps later, after that event.
     struct Late {
       std::string event;
       std::size_t by = 1;
@@ -71,15 +71,16 @@ struct EditScope {
     std::vector<Late> late = {};
   };
   std::vector<Step> steps;
-  /// By event symbol: fluents, by symbol, that became so with it in some run, wherever it happened.
+  /// By event symbol: fluents, by symbol, and the value that they took with it in some run,
+  /// wherever it happened.
   std::map<std::string, std::set<std::pair<std::string, bool>>> changed;
   /// Other events, and fluents, whose axioms may be to blame as well.
   std::set<std::string> more_events, more_fluents;
-  /// An event may leave open what it does: `Releases`.
+  /// The effects of an event may be left open: `Releases`.
   bool open_outcomes = false;
-  /// ... one that the world refused, though it can happen.
+  /// The same for an event that the world refused, though it can happen.
   bool open_refused = false;
-  /// Only conditions of which one of two is enough: `!Outside(spot) | DoorOpen()`.
+  /// Only conditions that are disjunctions of two: `!Outside(spot) | DoorOpen()`.
   bool alternatives = false;
 };
 

@@ -7,7 +7,7 @@ namespace {
 
 using Values = std::map<std::string, std::string>;
 
-/// What a condition says, without its arguments: "Holding", "!Holding".
+/// Signature of a condition, without its arguments: "Holding", "!Holding".
 std::string signature(const Ast& ast, NodeId node) {
   std::string sign;
   while (true) {
@@ -117,7 +117,7 @@ int EditRelevance::oddity(const ConditionLiteral& literal, const std::string& ev
   // Two variables of one sort are as a rule to be told apart.
   const bool tells_apart = literal.kind == ConditionLiteral::Kind::kEqual && literal.negated;
   if (tells_apart && literal.count(LiteralArgument::Kind::kVariable) == 2) --out;
-  // A condition is about what the event is about.
+  // A condition usually mentions an argument of the event.
   if (!literal.arguments.empty() && literal.count(LiteralArgument::Kind::kVariable) == 0) ++out;
   const auto wanted = (literal.negated ? "!" : "") + literal.symbol;
   for (const auto& form : forms_) {

@@ -9,8 +9,8 @@
 
 namespace parallax::compiler {
 
-/// Which literals and effects can have to do with what was seen at the steps of a scope, and how
-/// usual they are. What it is given outlives it.
+/// Rates literals and effects: which ones can explain the observations at the steps of a scope, and
+/// how usual they are. Its arguments outlive it.
 class EditRelevance {
  public:
   EditRelevance(const ModelAst& model, const std::vector<AxiomForm>& forms, const EditScope& scope)
@@ -22,8 +22,8 @@ class EditRelevance {
   bool in_some_step(const ConditionLiteral& literal, bool value,
                     const std::vector<std::string>& arguments, const std::string& symbol,
                     const std::vector<std::string>& variables) const;
-  /// Would the effect do to the fluent what was seen at one of the steps? `choice` are the fluent's
-  /// arguments.
+  /// Would the effect explain what was observed of the fluent at one of the steps? `choice` are the
+  /// fluent's arguments.
   bool covers(const std::string& kind, const std::string& event, const std::string& fluent,
               const std::vector<std::string>& of_event, const std::vector<std::string>& choice,
               const std::vector<std::string>& variables) const;

@@ -9,11 +9,11 @@
 
 namespace parallax::compiler {
 
-/// So many literals of a symbol are tried on one axiom.
+/// The most literals of a symbol that are tried on one axiom.
 inline constexpr std::size_t kMostLiterals = 160;
 
-/// What edits are looked for in, and the events and fluents, by symbol, that they are about. What
-/// it is made of outlives it.
+/// Model in which edits are sought, and the events and fluents, by symbol, that they are about.
+/// Everything referred to outlives it.
 struct EditSubject {
   const ModelAst& model;
   const TypedModel& typed;
@@ -23,14 +23,14 @@ struct EditSubject {
   std::set<std::string> events, fluents;
 };
 
-/// Appends the edits of the axioms of these events: one is dropped, gets a condition or loses one,
-/// has another effect.
+/// Appends edits of these events' axioms: one is dropped, gains or loses a condition, or has
+/// another effect.
 void add_axiom_edits(const EditSubject& subject, std::vector<Edit>& edits);
-/// Appends those of the events by themselves: conditions of all that one does, preconditions,
+/// Appends edits of the events themselves: conditions of everything that one does, preconditions,
 /// effects that are missing or left open.
 void add_event_edits(const EditSubject& subject, std::vector<Edit>& edits);
-/// Appends conditions of which one of two is enough, for all that an event does and for each of the
-/// effects that differed: likelier ones first, and not all.
+/// Appends conditions of which one of two is enough, for everything that an event does and for each
+/// of the effects that differed: likelier ones first, and not all.
 void add_alternatives(const EditSubject& subject, std::vector<Edit>& edits);
 
 }  // namespace parallax::compiler

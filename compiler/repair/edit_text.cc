@@ -55,7 +55,7 @@ std::string wrapped_axiom(const std::string& quantifier, const std::string& cond
   return quantifier + "\n  " + condition + " ->\n    " + effect + ".";
 }
 
-/// Of several effects each is an axiom of its own, as other readers of the language want it.
+/// One axiom for each of several effects, as other readers of the language require.
 std::string axiom_for_each(const std::string& quantifier, const std::string& condition,
                            const std::string& effects) {
   constexpr std::string_view kAnd = " & ";
@@ -75,7 +75,7 @@ std::string list(const std::vector<std::string>& names) {
   return out;
 }
 
-/// What is put into a part that goes stands in its place.
+/// Moves text that is inserted into a deleted part to the place of that part.
 std::vector<TextChange> without_nesting(std::vector<TextChange> changes) {
   std::vector<bool> inside(changes.size(), false);
   for (std::size_t i = 0; i < changes.size(); ++i) {

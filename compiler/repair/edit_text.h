@@ -8,14 +8,15 @@
 
 namespace parallax::compiler {
 
-/// Chosen edits of one model as changes of its texts and as words. What they refer to outlives it.
+/// Chosen edits of one model, as changes of its texts and as words. Everything referred to outlives
+/// it.
 class EditText {
  public:
   EditText(const ModelAst& model, const base::SourceFiles& files,
            const std::vector<AxiomForm>& forms, const std::vector<Edit>& edits)
       : model_(model), files_(files), forms_(forms), edits_(edits) {}
 
-  /// As few characters change as may; a new axiom stands behind the last one of its event.
+  /// Changes as few characters as possible; a new axiom stands after the last one of its event.
   std::vector<TextChange> changes(const std::vector<std::size_t>& chosen) const;
   /// One sentence: "`Go(base)` happens only where `Parked(left)` holds". No period.
   std::string words(const std::vector<std::size_t>& chosen) const;
@@ -37,8 +38,8 @@ class EditText {
   const std::vector<Edit>& edits_;
 };
 
-/// What an edit adds to the condition of one of its axioms, whose event may have other arguments:
-/// one literal, or two of which one is enough. Empty: it is a text.
+/// Literals that an edit adds to the condition of one of its axioms, whose event may have other
+/// arguments: one literal, or two of which one is enough. Empty: the edit adds a text.
 std::vector<ConditionLiteral> literals_in(const ModelAst& model,
                                           const std::vector<AxiomForm>& forms, const Edit& edit,
                                           std::size_t axiom);

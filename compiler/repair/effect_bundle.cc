@@ -62,8 +62,9 @@ class BundleMaker {
     return out;
   }
 
-  /// What is connected by objects; and what each fluent that ended has to do with those that began,
-  /// so that two things that slip are two cases of one sentence.
+  /// Groups of changes that are connected by objects. Another group joins each fluent that ended
+  /// with those that began and share an object with it, so that two things that slip are two cases
+  /// of one sentence.
   static std::set<Group> groups_of(const std::vector<Change>& changes) {
     std::set<Group> out;
     std::set<Change> open(changes.begin(), changes.end());
@@ -95,7 +96,7 @@ class BundleMaker {
     return out;
   }
 
-  /// Of the places at which the object stands the narrowest sort.
+  /// The narrowest sort among the places at which the object stands.
   SortId sort_of(const std::string& object, const Group& group) const {
     std::optional<std::pair<std::size_t, SortId>> best;
     for (const auto& change : group) {
@@ -192,7 +193,7 @@ class BundleMaker {
     if (with_conditions) conditions(place, of_event.size(), names, sorts, given);
   }
 
-  /// What ends and what begins is not one and the same fluent.
+  /// Adds conditions that a fluent that ends and one that begins are not the same.
   template <typename Term>
   static void tell_apart(const Group& group, const Term& term,
                          std::vector<ConditionLiteral>& given) {

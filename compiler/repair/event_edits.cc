@@ -9,7 +9,8 @@ namespace {
 constexpr int kOpenWithoutNeed = 20;     // oddity, beyond that of any condition
 constexpr std::size_t kMostPaired = 24;  // literals of which every two are an alternative
 
-/// What may be missing about an event: a condition of all that it does, a precondition, effects.
+/// Edits that add something missing about an event: a condition of everything it does, a
+/// precondition, effects.
 class EventEdits {
  public:
   EventEdits(const EditSubject& subject, std::vector<Edit>& out) : subject_(subject), out_(out) {}
@@ -25,7 +26,7 @@ class EventEdits {
       refused = refused || step.refused;
       not_possible = not_possible || step.not_possible;
     }
-    // What was tried and failed may fail. What cannot be is no outcome.
+    // An event that was tried and refused may fail; failing is no outcome of an impossible event.
     if (subject_.scope.open_outcomes || (subject_.scope.open_refused && refused && !not_possible))
       open_event(event, names, axioms);
     for (const auto& literal : condition_literals(subject_.typed, variables, kMostLiterals)) {
@@ -141,7 +142,7 @@ class EventEdits {
     return out;
   }
 
-  /// Of those that differed.
+  /// Is the axiom about a fluent that differed?
   bool is_about_fluents(std::size_t axiom) const {
     const auto& tree = ast(subject_.forms[axiom]);
     return std::any_of(subject_.forms[axiom].effects.begin(), subject_.forms[axiom].effects.end(),
@@ -152,7 +153,7 @@ class EventEdits {
                        });
   }
 
-  /// What the event does to the fluents that differed is left open.
+  /// Leaves open what the event does to the fluents that differed.
   void open_event(const std::string& event, const std::vector<std::string>& names,
                   const std::vector<std::size_t>& axioms) {
     Edit edit;
@@ -160,7 +161,7 @@ class EventEdits {
     edit.event = event;
     edit.variables = names;
     edit.event_arity = names.size();
-    // It explains anything: without need for it, it comes last.
+    // An open outcome explains anything: without need for it, it comes last.
     edit.oddity = subject_.scope.open_outcomes ? 1 : kOpenWithoutNeed;
     for (const auto i : axioms) {
       for (const auto effect : subject_.forms[i].effects) {
@@ -238,7 +239,8 @@ class EventEdits {
         kind + "(" + event + "(" + list(of_event) + ")," + fluent + "(" + list(choice) + "),time)";
     const auto place = out_.size();
     out_.push_back(edit);
-    // Conditions of what is special already, or about everything, would be most of all edits.
+    // Conditions of effects that are special already, or in a wide scope, would be most of all
+    // edits.
     if (constants || own > 1 || !subject_.scope.more_events.empty()) return;
     subject_.relevance.add_conditions(subject_.typed, place, variables, arity,
                                       1 + kMostLiterals / 8, {}, out_);

@@ -101,7 +101,7 @@ class GuardedForm {
     return atom;
   }
 
-  /// What the edit makes of an effect; empty: it leaves it as it is.
+  /// Text that the edit puts in the place of an effect; empty: the effect stays as it is.
   std::string instead_of(NodeId effect, std::size_t edit) const {
     const auto& ast = model_.ast(form_.place);
     if (edits_[edit].kind == Edit::Kind::kReplace && edits_[edit].node == effect) {

@@ -8,7 +8,7 @@
 namespace parallax::compiler {
 namespace {
 
-/// Of any event; a fluent that is a variable stands for all.
+/// Does some event release the fluent? A variable in its place stands for all fluents.
 bool is_released(const ModelAst& model, const std::vector<AxiomForm>& forms,
                  std::string_view fluent) {
   return std::any_of(forms.begin(), forms.end(), [&](const AxiomForm& form) {

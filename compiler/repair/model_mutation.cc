@@ -77,7 +77,8 @@ class ModelMutator {
  private:
   const Ast& ast(std::size_t i) const { return model_.ast(forms_[i].place); }
 
-  /// Where each statement acts: a file that others load need not know what they declare behind it.
+  /// Position at which each statement acts: a file that others load need not know their later
+  /// declarations.
   void place_fluents() {
     std::map<base::FileId, std::size_t> last;
     for (std::size_t k = 0; k < model_.order.size(); ++k) {
@@ -244,7 +245,7 @@ class ModelMutator {
     }
   }
 
-  /// Of each fluent that effects can change, a term over the first variables of its sorts; none
+  /// For each fluent that effects can change, a term over the first variables of its sorts; none
   /// where the axiom has no such variable.
   std::vector<std::pair<std::string, std::vector<LiteralArgument>>> terms(std::size_t i) const {
     std::vector<std::pair<std::string, std::vector<LiteralArgument>>> out;

@@ -9,20 +9,21 @@
 
 namespace parallax::compiler {
 
-/// A single mistake in a text, as people make them: what repairs undo, the other way round.
+/// A single mistake in a text, as people make them: the reverse of a repair.
 struct Mutation {
   std::string kind;      // "condition dropped"
   std::string words;     // a sentence without its period, with the place
-  base::SourceRange at;  // what is changed
+  base::SourceRange at;  // the text that is changed
   std::vector<TextChange> changes;
-  /// Of an effect or a precondition, not negated: a mistake of which `repair` knows the opposite.
+  /// True for an effect or a precondition, not negated: `repair` knows the reverse edit.
   bool is_repairable = false;
 };
 
-/// Every single mistake of a model's own axioms, in the order of the text. Of effects and
+/// Every single mistake of a model's own axioms, in the order of the text. For effects and
 /// preconditions: dropped, a condition dropped, negated, added or with exchanged variables, the
-/// other sign, exchanged variables, another fluent. Of other axioms: dropped, a condition of an
-/// implication dropped or negated, a fact negated. What can be seen to say the same is left out.
+/// other sign, exchanged variables, another fluent. For other axioms: dropped, a condition of an
+/// implication dropped or negated, a fact negated. Mutants that are visibly equivalent are left
+/// out.
 std::vector<Mutation> model_mutations(const ModelAst& model, const TypedModel& typed,
                                       const base::SourceFiles& files);
 

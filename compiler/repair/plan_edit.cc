@@ -56,16 +56,16 @@ std::string laid_out(const std::string& action, std::size_t column) {
   return out;
 }
 
-/// What goes around a statement: `open` is followed by a line end, and the statement stands
-/// `indent` further in.
+/// Text around a statement: `open` is followed by a line end, and the statement is indented by
+/// `indent` more columns.
 struct Wrapping {
   std::vector<std::string> open;      // lines, the first at the statement's own column
-  std::vector<std::size_t> indented;  // of the lines behind the first, from there
+  std::vector<std::size_t> indented;  // lines behind the first, relative to it
   std::size_t indent = 2;
   std::string close;
 };
 
-/// `(when C` or `(unless C`, without what is then done.
+/// `(when C` or `(unless C`, without the body.
 std::string asking(const std::string& condition) {
   constexpr std::string_view kNot = "(not ";
   if (!condition.starts_with(kNot)) return "(when " + condition;
@@ -161,7 +161,7 @@ TextChange statement_dropped(const PlanText& plan, DatumId form) {
   const auto text = plan.files()[source.file].text();
   auto begin = source.begin;
   while (begin > 0 && is_layout(text[begin - 1])) --begin;
-  // Behind a comment the line end stays, or what follows would become part of it.
+  // Behind a comment the line end stays, or the text after it would become part of the comment.
   const auto line = text.rfind('\n', begin == 0 ? 0 : begin - 1);
   const auto line_begin = line == std::string_view::npos ? 0 : line + 1;
   const bool comment = text.substr(line_begin, begin - line_begin).find(';') != text.npos;

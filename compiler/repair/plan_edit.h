@@ -18,7 +18,7 @@ struct PlanEdit {
     kInsert,  // `action` in front of the statement `at`
     kMove,    // the statement `moved` goes in front of `at`
     kGuard,   // `at` is done only where `condition` holds
-    kRetry,   // where `at` fails with `failure` it is tried again
+    kRetry,   // `at` is tried again where it fails with `failure`
     kHandle,  // ... the plan goes on behind it
   };
   Kind kind = Kind::kInsert;

@@ -41,13 +41,13 @@ class PlanMutator {
  private:
   bool is_action(DatumId form) const { return plan_.is_perform(form) || plan_.is_call(form); }
 
-  /// What may stand in the place of another value: a literal, or a name.
+  /// Can the datum stand in the place of another value? It must be a literal or a name.
   bool is_value(DatumId datum) const {
     if (data_.head(datum) == "quote") return !data_.is_list(data_.children(datum)[1]);
     return !data_.is_list(datum);
   }
 
-  /// Does the value mean something there, too? Names of variables do where they are bound.
+  /// Is the value known there, too? Names of variables are, where they are bound.
   bool is_known(const std::string& value, bool in_designator,
                 const std::set<std::string>& scope) const {
     if (!names_.contains(value)) return true;
@@ -55,7 +55,7 @@ class PlanMutator {
            (in_designator && !value.starts_with('?'));
   }
 
-  /// "put 2" of an argument of a call; "arm" of a pair of a designator.
+  /// Place of a value: "put 2" for an argument of a call, "arm" for a pair of a designator.
   using Place = std::pair<std::string, std::size_t>;
   static constexpr std::size_t kKey = 0;  // the function itself is no argument
 
@@ -143,7 +143,7 @@ class PlanMutator {
     }
   }
 
-  /// What a form does around its body goes, and the body stays.
+  /// Removes everything that a form does around its body; the body stays.
   TextChange only_body(DatumId form, DatumId before_body) const {
     const auto& source = plan_.source(form);
     return {source.file, source.begin, plan_.source(before_body).end, "(progn"};
@@ -169,7 +169,7 @@ class PlanMutator {
   const PlanText& plan_;
   const LispData& data_;
   std::map<Place, std::vector<std::string>> values_;
-  std::set<std::string> names_;  // of them, those that are symbols
+  std::set<std::string> names_;  // those that are symbols
   std::vector<Mutation> out_;
 };
 

@@ -46,7 +46,7 @@ bool is_global_head(std::string_view head) {
 }
 
 constexpr std::size_t kMostTypes = 2;   // of designators that one action performs
-constexpr std::size_t kMostValues = 8;  // that a variable of a copied form is tried with
+constexpr std::size_t kMostValues = 8;  // values that a variable of a copied form is tried with
 
 }  // namespace
 
@@ -132,7 +132,7 @@ void PlanText::collect_symbols(DatumId form, std::set<std::string>& out) const {
   });
 }
 
-/// Of a form whose body binds variables: their names.
+/// Names of the variables that a form binds for its body.
 std::vector<std::string> PlanText::bound_by(DatumId form) const {
   const auto& data = text_.data;
   const auto head = data.head(form);
@@ -249,8 +249,8 @@ bool PlanText::is_constant(DatumId form) const {
   return !data.is_symbol(form) || globals_.contains(data.name(form));
 }
 
-/// What the plan gives a variable that is bound around `where`, as it is written; nothing where
-/// that is computed.
+/// Values that the plan gives a variable bound around `where`, as they are written; none where the
+/// value is computed.
 std::vector<std::string> PlanText::values_of(const std::string& variable, DatumId where) const {
   const auto& data = text_.data;
   std::vector<std::string> out;

@@ -15,7 +15,7 @@
 namespace parallax::compiler {
 
 /// The forms of a plan as they are written, for edits of its text: which of them are statements,
-/// what can be seen from there, and which forms of the plan would make sense there, too.
+/// which names are visible there, and which other forms of the plan would make sense there.
 class PlanText {
  public:
   /// None where the text cannot be read.
@@ -55,8 +55,8 @@ class PlanText {
   std::set<std::string> free_variables(DatumId form) const;
   /// The function around a form; empty at top level.
   std::string function_of(DatumId form) const;
-  /// Inside something that leaves a block or tries again: what is put around it could change what
-  /// that means.
+  /// Is the form inside one that leaves a block or tries again? Text put around it could change the
+  /// meaning of that.
   bool jumps(DatumId form) const;
 
   /// A form that acts: a perform, or the call of a function of the plan that does.
@@ -75,13 +75,13 @@ class PlanText {
   /// The types of the designators that are performed in a form, in functions that it calls as well.
   std::set<std::string> performed_types(DatumId form) const;
   bool is_perform(DatumId form) const { return text_.data.head(form) == "perform"; }
-  /// Of a function that the plan defines.
+  /// Is the form a call of a function that the plan defines?
   bool is_call(DatumId form) const {
     const auto head = text_.data.head(form);
     return head && functions_.contains(*head);
   }
   std::optional<DatumId> parent(DatumId form) const;
-  /// Does it belong to the forms of the text?
+  /// Is the form part of the text?
   bool is_written(DatumId form) const;
   /// Does it stand in a quoted list, or is it the name and parameters of a definition?
   bool is_quoted(DatumId form) const;

@@ -92,12 +92,12 @@ class PartWriter {
   struct Refuted {
     std::size_t axiom = 0;
     Names terms;         // constants of the event, by the axiom's variables
-    std::size_t in = 0;  // so many runs
+    std::size_t in = 0;  // number of runs
   };
 
   const Ast& ast(std::size_t axiom) const { return model_.ast(forms_[axiom].place); }
 
-  /// What the axiom's variables stand for where it is about this very event.
+  /// Values of the axiom's variables if it is about this very event.
   std::optional<Names> values(std::size_t axiom) const {
     const auto& form = forms_[axiom];
     if (form.kind != AxiomForm::Kind::kEffects) return std::nullopt;
@@ -127,7 +127,7 @@ class PartWriter {
     return std::find(all.begin(), all.end(), constant) != all.end();
   }
 
-  /// Is this what the axiom says would not be?
+  /// Does the axiom deny this observation?
   bool denies(std::size_t axiom, const Names& values, const std::string& fluent,
               bool observed) const {
     const auto& tree = ast(axiom);
@@ -202,7 +202,7 @@ class PartWriter {
     }
   }
 
-  /// What the axiom asks for, as part of a longer condition; empty: nothing.
+  /// Condition of the axiom, to be continued by another one; empty: it has none.
   std::string condition_of(std::size_t axiom) const {
     const auto& form = forms_[axiom];
     if (!form.condition) return {};
@@ -232,7 +232,7 @@ class PartWriter {
     out_.changes.push_back({ast(axiom).file(), forms_[axiom].end, forms_[axiom].end, "\n" + text});
   }
 
-  /// What no axiom denied: effects that the model lacks there.
+  /// Adds effects that the model lacks there: differences that no axiom denied.
   void add_missing() {
     std::map<std::pair<std::string, bool>, std::size_t> missing;
     for (const auto& run : step_.differing) {
@@ -296,7 +296,8 @@ class PartWriter {
     }
   }
 
-  /// What came instead of an effect comes under its conditions.
+  /// The refuted axiom whose conditions apply to an effect that came instead: one that initiates
+  /// the same symbol, else the first.
   const Refuted* narrowed_like(const std::string& fluent) const {
     for (const auto& refuted : refuted_) {
       const auto& tree = ast(refuted.axiom);
@@ -309,7 +310,7 @@ class PartWriter {
     return refuted_.empty() ? nullptr : &refuted_.front();
   }
 
-  /// Behind what is said of the event, else at the end of the last file.
+  /// Adds the text after what is said of the event, else at the end of the last file.
   void add_at_end(const std::string& text) {
     std::optional<std::size_t> last;
     for (std::size_t i = 0; i < forms_.size(); ++i) {

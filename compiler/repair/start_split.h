@@ -11,13 +11,13 @@
 
 namespace parallax::compiler {
 
-/// A fluent that says how a thing began, and that no event changes: one half of what the model took
-/// for one start.
+/// A fluent that tells how a thing began and that no event changes: one half of a start that the
+/// model took for a single one.
 struct StartFluent {
   std::string name;      // "FarX"
   std::string sort;      // of its argument; empty: it has none
   std::string constant;  // the only one that it can hold for
-  std::string means;     // what its line in the model says
+  std::string means;     // explanation in its line of the model
 
   std::string ground() const { return name + "(" + constant + ")"; }
 };
@@ -25,20 +25,20 @@ struct StartFluent {
 /// `wanted`, with a digit where the model has the name.
 std::string unused_symbol(const TypedModel& typed, const std::string& wanted);
 
-/// Its declaration, behind the last fluent of the model. With nothing else changed the model says
-/// the same as before of each half.
+/// Declaration of the fluent, after the last fluent of the model. With nothing else changed the
+/// model says the same as before about each half.
 TextChange declare(const StartFluent& fluent, const ModelAst& model, const TypedModel& typed,
                    const base::SourceFiles& files);
 
-/// An event in the part of the starts where all fluents hold, and what was seen behind it in each
-/// run, as far as the model says otherwise.
+/// An event in the part of the starts where all fluents hold, and the observations behind it in
+/// each run that differ from the model.
 struct PartStep {
   std::string event;  // "Go(bTable)"
   std::vector<std::map<std::string, bool>> differing;
 };
 
-/// What the event does in the part, told by what was seen there: effects that never came are
-/// confined to the rest, those that came at times are open, others are new.
+/// Effects of the event in the part, derived from the observations there: effects that never came
+/// are confined to the rest, those that came at times are left open, others are new.
 struct PartEffects {
   std::vector<TextChange> changes;
   std::vector<std::string> not_there;  // heads of axioms that the part is taken out of

@@ -21,7 +21,7 @@ Polarity flipped(Polarity polarity) {
   return polarity == Polarity::kPositive ? Polarity::kNegative : Polarity::kPositive;
 }
 
-/// An effect or trajectory atom and what stands around it.
+/// An effect or trajectory atom and its context.
 struct Occurrence {
   TypedFormulaId atom;
   Polarity polarity = Polarity::kPositive;
@@ -142,7 +142,7 @@ class ShapeReader {
     std::reverse(occurrences_.begin(), occurrences_.end());
   }
 
-  /// An atom that is a whole side of `<->` looks like an effect axiom and is none; inside a side
+  /// An atom that is a whole side of `<->` looks like an effect axiom but is not one; inside a side
   /// it is part of the definition of the other.
   template <typename Go>
   void iff_side(TypedFormulaId side, const Go& go) {
@@ -360,7 +360,7 @@ class ShapeReader {
   std::vector<Occurrence> occurrences_;
   std::vector<Prefix> prefixes_;
   bool warned_ = false;
-  bool has_conjuncts_ = false;  // what is asserted is a conjunction
+  bool has_conjuncts_ = false;  // the asserted formula is a conjunction
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ void add_effect_formula(TypedFormulaId formula, std::string label, TypedModel& m
 bool mentions_effects(const TypedModel& model, TypedFormulaId formula);
 
 /// Is the axiom the definition of a predicate by effects, `P(..) <-> ..`, as those of Clipped and
-/// of ECCausal.e? It says what happens then; for completion it is no reason of what it mentions.
+/// of ECCausal.e? For completion such a definition gives no reason for the atoms in it.
 bool defines_by_effects(const TypedModel& model, const Axiom& axiom);
 
 }  // namespace parallax::compiler

@@ -15,7 +15,7 @@ namespace {
 using Part = ClauseShape::Part;
 using Clause = std::vector<Part>;
 
-// Larger formulas are none of those looked for; this bounds the recursion below as well.
+// Larger formulas are none of the axioms; this bounds the recursion below as well.
 constexpr std::uint32_t kMostNodes = 120;
 constexpr std::size_t kMostClauses = 16;
 constexpr std::size_t kMostLiterals = 12;
@@ -320,7 +320,7 @@ class ShapeMatcher {
       case Part::Kind::kCompare:
         return a.op == pattern.op && term(a.left, pattern.left) && term(a.right, pattern.right);
       case Part::Kind::kExists: {
-        // What exists does so in the sort that is named.
+        // An existential formula depends on the sorts of its variables.
         const auto sorts = [](const Part& exists) {
           std::vector<std::string_view> all;
           for (const auto name : exists.variables) all.push_back(sort_of_variable(name));

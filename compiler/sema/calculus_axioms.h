@@ -32,7 +32,7 @@ class ClauseShape {
   std::vector<std::vector<Part>> clauses_;
 };
 
-/// What stands at a place of a clause.
+/// A part of a clause.
 struct ClauseShape::Part {
   enum class Kind : std::uint8_t { kAtom, kCompare, kAnd, kOr, kExists };
   Kind kind = Kind::kAtom;

@@ -115,8 +115,8 @@ class Declarer {
     return false;
   }
 
-  /// Some tools declare variables, as in `agent agent1`. Where the sort has constants of its own
-  /// that is what is meant, and an object more would change every formula about the sort.
+  /// Some tools declare variables, as in `agent agent1`. Where the sort has constants of its own, a
+  /// variable is meant, and a further object would change every formula about the sort.
   void report_like_variables() {
     for (const auto& like : like_variables_) {
       if (has_constants(like.sort)) {

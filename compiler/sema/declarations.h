@@ -15,8 +15,9 @@
 
 namespace parallax::compiler {
 
-/// What is said again. Once for each file where the foundations said it first: old models repeat
-/// them, whole or in part; not at all where the file is a copy of a foundation.
+/// Reports repeated declarations and axioms. Those that the foundations make first are reported
+/// once for each file, since old models repeat them, whole or in part; not at all where the file is
+/// a copy of a foundation.
 class Repetitions {
  public:
   Repetitions(const ModelAst& ast, base::DiagnosticSink& sink);
@@ -37,7 +38,7 @@ class Repetitions {
 
   base::DiagnosticSink& sink_;
   std::vector<Kind> kinds_;  // by file
-  std::vector<bool> told_;   // by file: that it repeats the foundations
+  std::vector<bool> told_;   // by file: was its repetition of the foundations reported?
 };
 
 /// All `sort` and `reified sort` statements: names, then parents, then what parents imply. A sort
@@ -72,7 +73,7 @@ class IgnoredNames {
 };
 
 /// Fills the sorts, objects and symbols of `model` from all declarations, wherever in the model
-/// they stand, and its options and completions. Reports and leaves out what is wrong.
+/// they stand, and its options and completions. Reports wrong declarations and leaves them out.
 void declare(const ModelAst& ast, const IgnoredNames& ignored, const CheckOptions& options,
              Repetitions& repetitions, TypedModel& model, base::DiagnosticSink& sink);
 

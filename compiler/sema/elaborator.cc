@@ -146,7 +146,7 @@ void Elaborator::advance() {
   values_.push_back(value);
 }
 
-/// What the other side of a comparison says about the sort of this one, for messages.
+/// Sort that the other side of a comparison suggests for this one, for messages.
 std::optional<SortId> Elaborator::sort_beside(const Node& comparison, std::uint32_t index) const {
   const Node& other = (*ast_)[ast_->child(comparison, 1 - index)];
   if (other.kind == NodeKind::kApply) {
@@ -262,7 +262,7 @@ void Elaborator::enter_apply(Frame& frame, const Node& node) {
   }
   if (symbol.arguments.size() != node.child_count) {
     frame.failed = true;
-    // What stands beyond the declared arguments has no sort to be checked against.
+    // Arguments beyond the declared ones have no sort to be checked against.
     frame.end_child =
         std::min(node.child_count, static_cast<std::uint32_t>(symbol.arguments.size()));
     auto report = sink_.error(codes::kWrongArity, source(node), shortened(symbol.name),

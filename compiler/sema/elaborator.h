@@ -18,7 +18,7 @@ namespace parallax::compiler {
 /// `time` of `time27`: the sort that a variable of this name has.
 std::string_view sort_of_variable(std::string_view name);
 
-/// What a formula may use beyond its own quantifiers.
+/// Extensions that a formula may use beyond its own quantifiers.
 struct ElaborationOptions {
   bool allow_free_time = false;
   /// Names that no quantifier binds are variables of their sort, the same ones in all formulas that
@@ -40,13 +40,13 @@ class Elaborator {
 
   Elaborator(TypedModel& model, const ElaborationOptions& options, base::DiagnosticSink& sink);
 
-  /// Nothing if anything was wrong.
+  /// The typed formula; none if there was any error.
   std::optional<TypedFormulaId> elaborate(const Ast& ast, NodeId root);
 
-  /// Of the formula elaborated last:
+  /// Results for the formula elaborated last.
   bool mentions_effects() const { return mentions_effects_; }  // also trajectories
   std::optional<VariableId> free_time() const { return free_time_; }
-  /// Of all formulas so far, in order of occurrence.
+  /// Free variables of all formulas so far, in order of occurrence.
   const std::vector<VariableId>& free_variables() const { return free_variables_; }
 
   /// By symbol: was it used in any formula so far?
@@ -69,7 +69,7 @@ class Elaborator {
     std::uint32_t end_child = 0;
     std::size_t values = 0;  // size of values_ when the frame was opened
     std::optional<SymbolId> symbol;
-    std::optional<SortId> expected;  // what the parent wants, for messages
+    std::optional<SortId> expected;  // sort that the parent expects, for messages
     std::vector<VariableId> variables;
     bool failed = false;
   };

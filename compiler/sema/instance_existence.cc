@@ -136,8 +136,8 @@ class ExistenceWriter {
   }
 
  private:
-  /// A copy of the formula in which effects and trajectories are what they name; the formula itself
-  /// where it has none.
+  /// A copy of the formula in which effects and trajectories are replaced by what they name; the
+  /// formula itself where it has none.
   TypedFormulaId without_effects(TypedFormulaId root) {
     struct Visit {
       TypedFormulaId id;

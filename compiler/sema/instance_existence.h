@@ -12,8 +12,8 @@ namespace parallax::compiler {
 bool may_lack_instances(const TypedModel& model, TypedFormulaId formula,
                         const std::set<std::uint32_t>& before_last);
 
-/// Adds the times of events and effects of which the whole formula is made, under conjunctions:
-/// where an instance of the formula exists, these are timepoints before the last one.
+/// Adds the times of the events and effects under the formula's conjunctions: where an instance of
+/// the whole formula exists, these are timepoints before the last one.
 void collect_event_times(const TypedModel& model, TypedFormulaId formula,
                          std::set<std::uint32_t>& before_last);
 

@@ -44,7 +44,7 @@ std::string_view spelling(CompareOp op) {
   return "?";
 }
 
-/// Formulas and terms with a stack of what is still to be written.
+/// Writes formulas and terms with an explicit stack of pending nodes.
 class TreeWriter {
  public:
   explicit TreeWriter(const TypedModel& model) : model_(model) {}

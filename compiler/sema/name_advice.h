@@ -17,11 +17,11 @@ std::string_view kind_word(SymbolKind kind);
 std::string with_article(std::string_view noun);
 /// "Filled(cup)" as it was declared.
 std::string signature(const TypedModel& model, const Symbol& symbol);
-/// The sort of a term for messages: of a constant the first one, "integer" for numbers.
+/// The sort of a term for messages: the first one of a constant, "integer" for numbers.
 std::string sort_name(const TypedModel& model, TermId term);
 
-/// What to do where a predicate of the event calculus is used that the model has not declared, or
-/// an old one with another number of arguments; empty for other names.
+/// Advice for a predicate of the event calculus that the model has not declared, or for an old one
+/// with another number of arguments; empty for other names.
 std::string_view calculus_advice(std::string_view name, std::size_t arguments);
 
 /// Finds declared names near a misspelt one. Gives up on sets of names so large that searching them

@@ -226,9 +226,9 @@ struct TrajectoryAxiom {
   base::SourceRange source;
 };
 
-/// A conjunct of a formula that was taken apart into axioms, and the conjuncts beside it of which
-/// instances may be missing: `[variables] condition -> conjunct & part & ...`. An instance in which
-/// one of them is missing says nothing. The axiom of the conjunct has that in its condition.
+/// A conjunct of a formula that was taken apart into axioms, and the conjuncts beside it that may
+/// lack instances: `[variables] condition -> conjunct & part & ...`. An instance in which one of
+/// them is missing says nothing. The axiom of the conjunct has that in its condition.
 struct SharedInstance {
   struct Part {
     TypedFormulaId existence;  // true, with the instances of the part
@@ -270,7 +270,7 @@ struct Completion {
   base::SourceRange source;
 };
 
-/// `minimize OBJECTIVE`; what the objective says is looked at where best traces are asked for.
+/// `minimize OBJECTIVE`; the objective is read only where best traces are asked for.
 struct ObjectiveStatement {
   std::string text;
   base::SourceRange source;

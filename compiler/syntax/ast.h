@@ -48,7 +48,7 @@ enum class Operator : std::uint8_t {
   kNot,     // unary
   kNegate,  // unary -
   kPlus,    // unary +
-  // Of properties and state constraints; all but the last two are unary.
+  // Operators of properties and state constraints; all but the last two are unary.
   kAlways,
   kEventually,
   kNext,
@@ -62,7 +62,7 @@ enum class Operator : std::uint8_t {
 
 constexpr bool is_temporal(Operator op) { return op >= Operator::kAlways; }
 constexpr bool is_binary_temporal(Operator op) { return op >= Operator::kUntil; }
-/// The temporal operator that is written so: `always`.
+/// The temporal operator with this name: `always`.
 std::optional<Operator> temporal_operator(std::string_view word);
 
 /// The spelling in the source, such as "<->".
@@ -140,7 +140,7 @@ class Ast {
     return items_.data() + statement.first_item;
   }
 
-  /// Of a kRange.
+  /// Bounds of a kRange statement.
   const Bounds& bounds(const Statement& statement) const { return bounds_[statement.first_item]; }
 
   const Node& operator[](NodeId id) const {
@@ -171,7 +171,7 @@ class Ast {
   NodeId add_with(Node node, std::size_t count, const Child& child) {
     node.first_child = static_cast<std::uint32_t>(children_.size());
     node.child_count = static_cast<std::uint32_t>(count);
-    // One node with millions of children shall not double what it needs.
+    // A node with millions of children must not double its memory.
     if (count > children_.size()) children_.reserve(children_.size() + count);
     for (std::size_t i = 0; i < count; ++i) children_.push_back(child(i));
     return add(node);

@@ -27,7 +27,8 @@ const ForeignSpelling* foreign_word(std::string_view word);
 /// Signs that are foreign in some places only: `,` between formulas, `%` in front of a comment.
 const ForeignSpelling& foreign_comma();
 const ForeignSpelling& foreign_percent();
-/// Does the line, which begins with a foreign word, hold what no declaration of constants can?
+/// Does the line, which begins with a foreign word, hold something that no declaration of constants
+/// can?
 bool is_foreign_formula(std::string_view line);
 
 void report_foreign(const ForeignSpelling& spelling, const base::SourceRange& range,

@@ -24,7 +24,7 @@ std::size_t leading_blanks(std::string_view text) {
   return count;
 }
 
-/// The lines of `text`; the last one is what follows the last line break.
+/// The lines of `text`; the last one is the text after the last line break.
 std::vector<std::string_view> lines_of(std::string_view text) {
   std::vector<std::string_view> lines;
   for (;;) {
@@ -172,7 +172,7 @@ class Formatter {
   std::string_view text_;
   Lexer& lexer_;
   std::string out_;
-  std::uint32_t position_ = 0;  // what is before it has been written
+  std::uint32_t position_ = 0;  // end of the text that has been written
   std::size_t next_statement_ = 0;
 };
 

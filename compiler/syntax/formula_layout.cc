@@ -108,7 +108,7 @@ class Layout {
       if (!comma) text(" ");
       emit(at, at + 1);
       begin = at + 1;
-      // What follows from a condition stands below it.
+      // The consequence of a condition stands below it.
       const bool last = at == breaks.back();
       new_line(arrow && last ? indent + kStep : indent);
     }
@@ -135,7 +135,7 @@ class Layout {
     return true;
   }
 
-  /// Breaks inside the outermost brackets of what has no connective outside them.
+  /// Breaks a range without connectives outside of brackets inside its outermost brackets.
   void place_brackets(Range range, std::size_t indent, std::size_t tail, int depth) {
     for (auto i = range.begin; i < range.end; ++i) {
       if (i != range.begin && tokens_[i].space_before) text(" ");
@@ -156,8 +156,8 @@ class Layout {
     return is_connective(token) ? binding(token.token.op) : kNothingToBreak;
   }
 
-  /// The weakest connectives of the range outside all brackets, or its commas. A quantifier
-  /// reaches to the end, so what follows one does not count.
+  /// The weakest connectives of the range outside all brackets, or its commas. A quantifier reaches
+  /// to the end, so connectives after it do not count.
   std::vector<std::size_t> weakest(Range range) const {
     std::vector<std::size_t> found;
     int best = kNothingToBreak;

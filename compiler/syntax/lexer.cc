@@ -165,7 +165,7 @@ void Lexer::skip_illegal() {
               text_.substr(begin, length));
 }
 
-/// Where the parameter `?left-arm` at the position ends; the position itself if there is none.
+/// End of the parameter `?left-arm` at the position; the position itself if there is none.
 std::uint32_t Lexer::parameter_end() const {
   if (mode_ != Mode::kBinding || text_[position_] != '?') return position_;
   const auto is_part = [this](std::uint32_t at) {

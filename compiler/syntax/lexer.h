@@ -38,7 +38,7 @@ struct Token {
 bool is_blank(char c);  // space, tab, carriage return, form feed
 bool is_name_start(char c);
 
-/// What a line is, by its first word.
+/// Kind of a line, by its first word.
 enum class LineKind : std::uint8_t {
   kFormulaText,
   kFormulaTextOnlyHere,  // formula text that the 2005 reasoner takes for a declaration

@@ -190,7 +190,7 @@ class ModelLoader {
       candidates.push_back(path);
     }
     for (const auto& named : candidates) {
-      // One name for what is looked for, admitted and read, also where it leads through a link.
+      // One name for looking up, admitting and reading a file, also where it leads through a link.
       const auto candidate = named.lexically_normal();
       // A file that appears here later would be loaded instead.
       files_.note_input(candidate.string());
@@ -248,7 +248,7 @@ class ModelLoader {
     open_foundation(path, place, range);
   }
 
-  /// What is opened last acts first.
+  /// Opens a foundation. The text opened last acts first.
   void open_foundation(const std::string& path, const ModelAst::Place& place,
                        const base::SourceRange& range) {
     if (!model_.files[place.file].built_in) {

@@ -34,8 +34,8 @@ struct ModelAst {
   struct File {
     Ast ast;
     bool built_in = false;  // one of our foundations
-    /// A file on disk with the name of a foundation, which is loaded as well: what it has in common
-    /// with the foundation it only repeats.
+    /// A file on disk with the name of a foundation, which is loaded as well: statements that both
+    /// have count as repetitions.
     bool repeats_foundation = false;
   };
   struct Place {

@@ -139,7 +139,7 @@ class StatementParser {
     ast_.add(statement_);
   }
 
-  /// What follows the keyword is looked at elsewhere.
+  /// Reads a statement whose text after the keyword is checked elsewhere.
   void rest(StatementKind kind, const char* wanted) {
     statement_.kind = kind;
     skip_blanks();

@@ -10,11 +10,11 @@
 namespace parallax::compiler {
 
 /// Deepest tree, and most brackets open at once, that the parser accepts (E1009). It uses no
-/// recursion itself; the limit protects what comes after it.
+/// recursion itself; the limit protects the later stages.
 inline constexpr std::uint32_t kMaxFormulaDepth = 20'000;
 
-/// Parses a whole `.e` text. Never fails: what is wrong is reported and left out, the rest is in
-/// the Ast. Linear in the length of the text.
+/// Parses a whole `.e` text. Never fails: wrong text is reported and left out, the rest is in the
+/// Ast. Linear in the length of the text.
 ///
 /// Statements take one line. A line is a statement if it starts with a keyword, or with a
 /// lower-case word that is followed by a name (a declaration of constants); all other lines are
@@ -42,8 +42,8 @@ base::Result<ParsedFormula> parse_temporal_formula(const base::SourceRange& rang
                                                    base::DiagnosticSink& sink);
 
 /// A formula of a plan's binding table: `?arm` is a name, and `exists i, j.` and `forall i.` are
-/// quantifiers beside `{i,j}` and `[i]`. `text` is the text of the range's file, or as long with
-/// blanks for what is no part of the table. The Ast views it.
+/// quantifiers beside `{i,j}` and `[i]`. `text` is the text of the range's file, or as long, with
+/// blanks for text outside the table. The Ast views it.
 base::Result<ParsedFormula> parse_binding_formula(const base::SourceRange& range,
                                                   std::string_view text,
                                                   base::DiagnosticSink& sink);

@@ -35,7 +35,7 @@ FormulaParser::Step FormulaParser::temporal_binary(Operator op, Token token) {
   return binary(token);
 }
 
-/// What others call the operators, or a slip of the pen.
+/// Reports a name that other notations give an operator, or a misspelt one.
 bool FormulaParser::report_unknown_temporal(const Token& token) {
   static constexpr std::array<std::pair<std::string_view, Operator>, 16> kOtherNames = {
       {{"G", Operator::kAlways},

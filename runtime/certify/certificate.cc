@@ -170,7 +170,7 @@ CompletenessClaim::CompletenessClaim(const CompiledModel& model)
 /// Two traces of this length are one if they agree on the keys.
 bool CompletenessClaim::is_key(const Observable& observable, Timepoint length) const {
   if (!model_.has_constraints) return true;
-  // What a perform returned is known one timepoint later.
+  // The object that a perform returned is known one timepoint later.
   const auto last = observable.kind == AtomKind::kResult ? length : length - 1;
   return observable.kind != AtomKind::kHoldsAt && observable.time <= last;
 }
@@ -347,7 +347,7 @@ ProofFiles::~ProofFiles() {
 }
 
 base::Status ProofFiles::restart(base::DiagnosticSink& sink) {
-  std::fclose(std::exchange(proof_, nullptr));  // what was lost does not matter any more
+  std::fclose(std::exchange(proof_, nullptr));  // errors do not matter any more
   proof_ = std::fopen(proof_part().c_str(), "wb");
   if (proof_ == nullptr) return not_writable(proof_path_, errno, sink);
   return base::Unit{};

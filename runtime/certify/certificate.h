@@ -95,17 +95,17 @@ class ProofFiles {
   std::FILE* proof() const { return proof_; }
   std::filesystem::path formula_path() const { return proof_path_.string() + ".cnf"; }
   const std::filesystem::path& proof_path() const { return proof_path_; }
-  /// Under these names they are until they are kept.
+  /// Names of the files until they are kept.
   std::filesystem::path formula_part() const { return formula_path().string() + ".part"; }
   std::filesystem::path proof_part() const { return proof_path_.string() + ".part"; }
 
-  /// What was written so far can be read. False: a part of it was lost.
+  /// Makes everything written so far readable. False: a part of it was lost.
   bool flush() const { return std::fflush(proof_) == 0 && std::ferror(proof_) == 0; }
-  /// Drops what was written to the proof; reports kFileNotWritable.
+  /// Drops everything written to the proof; reports kFileNotWritable.
   base::Status restart(base::DiagnosticSink& sink);
-  /// Everything was written to the disk; reports kFileNotWritable.
+  /// Writes everything to the disk and closes the proof; reports kFileNotWritable.
   base::Status close(base::DiagnosticSink& sink);
-  /// Gives them their names.
+  /// Gives the files their final names.
   base::Status keep(base::DiagnosticSink& sink);
 
  private:
@@ -115,17 +115,17 @@ class ProofFiles {
   bool present_ = false;
 };
 
-/// A solver for a session that looks for traces in many calls, whose log is a DRAT proof of what
-/// the calls found: in the end, if they found all traces, of the claim.
+/// A solver for a session that searches for traces in many calls, whose log is a DRAT proof of the
+/// calls' results: in the end, if they found all traces, of the claim.
 ///
 /// Clauses that are added before the first call are those of the model. Later ones that only have
-/// variables of the claim are taken for its blocking clauses, unless they are units; the others
-/// are logged, the literal of their largest variable first: if that is new, the clause is a
-/// definition, which DRAT admits (RAT). What an unsatisfiable call shows is logged as the clause
-/// that its assumptions contradict each other.
+/// variables of the claim are taken for its blocking clauses, unless they are units; the others are
+/// logged, the literal of their largest variable first: if that is new, the clause is a definition,
+/// which DRAT admits (RAT). The result of an unsatisfiable call is logged as the clause that its
+/// assumptions contradict each other.
 ///
 /// The log is checked like any other proof: nothing here has to be trusted. `proof` outlives the
-/// solver and is the caller's to flush and to ask for errors.
+/// solver; the caller flushes it and asks for errors.
 std::unique_ptr<SatSolver> make_logged_solver(std::FILE* proof, const CompletenessClaim& claim,
                                               const std::atomic<bool>* stop = nullptr);
 

@@ -11,7 +11,7 @@
 namespace parallax::runtime {
 
 /// Conjunctions as literals of a solver, the same conjunction always the same literal. Two models
-/// that are mapped into one circuit thus share what they have in common.
+/// that are mapped into one circuit thus share equal parts.
 class Circuit {
  public:
   /// `first_free`: the first variable of the solver that the circuit may use. The solver outlives

@@ -21,7 +21,7 @@ using compiler::AtomKind;
 using compiler::CompiledModel;
 using compiler::Literal;
 
-/// What the clauses say of one auxiliary.
+/// Clauses that mention one auxiliary.
 struct Candidate {
   std::vector<Literal> implied;     // it implies each of them
   std::vector<Literal> implies_it;  // all of them together imply it
@@ -108,7 +108,7 @@ class GateFinder {
         gate.implied.empty() ? std::move(gate.implies_it) : std::move(gate.implied);
   }
 
-  /// A gate that needs itself is none. (Depth first; a file may hold anything.)
+  /// Drops gates that depend on themselves. (Depth first; a file may hold anything.)
   void drop_cycles() {
     enum : std::uint8_t { kNew, kOpen, kDone };
     std::vector<std::uint8_t> state(candidates_.size(), kNew);
@@ -222,8 +222,7 @@ class ForcedSearch {
     }
   }
 
-  // --- what the model forces
-  // ----------------------------------------------------------------------
+  // --- variables that the model forces -----------------------------------------------------
 
   void index_clauses() {
     clauses_of_.resize(known_.size());
@@ -238,7 +237,7 @@ class ForcedSearch {
     next_variable_ = model_.variable_count();
   }
 
-  /// Clauses with the variable in this polarity of which all else is known.
+  /// Clauses with the variable in this polarity whose other variables are all known.
   std::vector<std::size_t> usable(std::int32_t variable, bool value) const {
     std::vector<std::size_t> out;
     for (const auto c : clauses_of_[static_cast<std::size_t>(variable) - 1]) {
@@ -251,7 +250,7 @@ class ForcedSearch {
     return out;
   }
 
-  /// What has more usable clauses than when it was last tried.
+  /// Variables and values that have more usable clauses than when they were last tried.
   std::vector<Candidate> candidates() {
     std::vector<Candidate> out;
     for (const auto variable : unknown_) {
@@ -340,10 +339,9 @@ class ForcedSearch {
     settled_.push_back(variable);
   }
 
-  // --- what it does not
-  // ---------------------------------------------------------------------------
+  // --- variables that it leaves open --------------------------------------------------------
 
-  /// Timepoint, then states before what happens.
+  /// By timepoint, states before events.
   std::pair<std::int32_t, int> rank(std::int32_t variable) const {
     if (variable <= model_.base()) {
       const auto& atom = model_.fixed[static_cast<std::size_t>(variable) - 1];

@@ -146,7 +146,7 @@ DifferenceFinder::DifferenceFinder(const CompiledModel& first,
   prepare_refutation();
 }
 
-/// The first model with its definitions as gates, so that both models share what they can.
+/// Adds the first model with its definitions as gates, so that both models share equal parts.
 void DifferenceFinder::add_first() {
   mapped_first_.emplace(first_, *first_definitions_, circuit_,
                         [](std::int32_t variable) { return Literal::positive(variable); });
@@ -212,7 +212,7 @@ Answer DifferenceFinder::search(std::optional<Literal> assumption, bool describe
     const auto status = solve(by, assumption);
     if (status == SolveStatus::kUnsatisfiable) return Answer::kNone;
     if (status == SolveStatus::kUnknown) return Answer::kUnknown;
-    // Where one call answers, what is only counted need not be looked at again.
+    // Where one call answers, a trace that is only counted need not be looked at again.
     if (!describes && is_determined()) return Answer::kFound;
     const auto verified = verify(by);
     if (verified == SolveStatus::kUnsatisfiable) {
@@ -245,7 +245,7 @@ bool DifferenceFinder::is_true(const SharedAtom& atom) const {
   return found_[static_cast<std::size_t>(&atom - vocabulary_.shared.data())];
 }
 
-/// Has the second model, up to `by`, a valuation with what was found?
+/// Has the second model, up to `by`, a valuation with the trace that was found?
 SolveStatus DifferenceFinder::verify(Timepoint by) {
   if (impossible(by)) return SolveStatus::kUnsatisfiable;
   return verifier_.solve(by, observation(by));

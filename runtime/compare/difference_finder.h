@@ -27,11 +27,12 @@ struct SharedAtom {
   std::uint32_t name = 0;              // index into SharedVocabulary::names
   Timepoint time = 0;
   std::optional<Literal> first, second;
-  /// The horizon from which on it exists.
+  /// The least horizon at which it exists.
   Timepoint needed_horizon() const { return time + (kind == AtomKind::kHappens ? 1 : 0); }
 };
 
-/// What two models of one horizon can be compared on: the ground fluents and events that both have.
+/// Vocabulary on which two models of one horizon can be compared: the ground fluents and events
+/// that both have.
 struct SharedVocabulary {
   std::vector<std::string> names;
   std::vector<SharedAtom> shared;  // by timepoint, fluents before events, in the first's order
@@ -44,18 +45,18 @@ struct SharedVocabulary {
 SharedVocabulary shared_vocabulary(const CompiledModel& first, const CompiledModel& second,
                                    Timepoint n);
 
-/// Names, by side, exchanged.
+/// The same vocabulary with the two sides exchanged.
 SharedVocabulary exchanged(const SharedVocabulary& vocabulary);
 
 /// The model with the horizon `n`, at most its own: later clauses and timepoints are left out.
 /// Sections, which describe how a file is written, are not kept.
 CompiledModel truncated(const CompiledModel& model, Timepoint n);
 
-/// By variable - 1: what the models are compared on.
+/// By variable - 1: is it among the shared atoms on which the models are compared?
 std::vector<bool> observed_in(const CompiledModel& model, const SharedVocabulary& vocabulary,
                               std::optional<Literal> SharedAtom::*side);
 
-/// How the variables of a side of the vocabulary follow from what is compared.
+/// Definitions of the variables on one side of the vocabulary by the shared atoms.
 std::shared_ptr<const Definitions> definitions_for(const CompiledModel& model,
                                                    const SharedVocabulary& vocabulary,
                                                    std::optional<Literal> SharedAtom::*side,
@@ -110,7 +111,7 @@ class DifferenceFinder {
   /// The first atom of the trace up to then that no trace of the second model has.
   std::optional<SharedAtom> impossible() const;
   std::size_t events_before(Timepoint t) const;
-  /// find(), but what is found is only to be blocked, not described.
+  /// find(), for a trace that is only to be blocked, not described.
   Answer find_any();
   /// Excludes traces with the same shared observables from all further answers.
   void block();

@@ -117,7 +117,7 @@ Refutation::Refutation(const compiler::CompiledModel& model, const Definitions& 
   all_ = closed_;
 }
 
-/// What follows from other clauses, or holds by definition, is never needed.
+/// Is the clause needed? Those that follow from other clauses, or hold by definition, never are.
 bool Refutation::is_relevant(std::size_t clause) const {
   if (definitions_.is_gate_clause[clause]) return false;
   return model_.origins[model_.clause_origins[clause]].kind != compiler::OriginKind::kInvariant;

@@ -48,18 +48,18 @@ class ClauseSet {
   LiteralLists clauses_;
 };
 
-/// "The observables are no trace of this model", in the clauses of a solver. For given values of
-/// the model's free variables that is: some clause is violated.
+/// The statement "the observables are no trace of this model" in the clauses of a solver: for given
+/// values of the model's free variables, some clause is violated.
 class Refutation {
  public:
-  /// Of one timepoint; `some` is true only if a clause of it is violated.
+  /// Violations at one timepoint; `some` is true only if one of its clauses is violated.
   struct Violations {
     compiler::Timepoint time = 0;
     Literal some;
   };
 
-  /// `observed(v)`: the literal of an observed variable. `asserted` holds anyway, so it cannot be
-  /// what is violated. `impossible`: literals that no trace of the model has. The references
+  /// `observed(v)`: the literal of an observed variable. Clauses of `asserted` hold anyway, so they
+  /// cannot be violated. `impossible`: literals that no trace of the model has. The references
   /// outlive the object.
   Refutation(const compiler::CompiledModel& model, const Definitions& definitions, Circuit& circuit,
              SatSolver& solver, const ClauseSet& asserted,
@@ -68,7 +68,7 @@ class Refutation {
 
   /// Requires that these values of the free variables make no trace of the model.
   void require(const std::function<bool(std::int32_t)>& free_value);
-  /// For the next call: violated by clauses up to `by`.
+  /// Assumes for the next call that a clause up to `by` is violated.
   void assume_by(compiler::Timepoint by) const;
 
  private:
@@ -84,8 +84,8 @@ class Refutation {
   const ClauseSet& asserted_;
   MappedModel mapped_;
   std::vector<std::size_t> open_;   // clauses that depend on free variables
-  std::vector<Violations> closed_;  // of the others
-  std::vector<Violations> all_;     // with those for all values that were required
+  std::vector<Violations> closed_;  // violations of the other clauses
+  std::vector<Violations> all_;     // `closed_`, and those for all values required so far
 };
 
 }  // namespace parallax::runtime

@@ -70,7 +70,7 @@ class Side {
   std::vector<std::uint32_t> state(std::uint32_t node) const {
     return fluents_.true_names(graph_.node(node).observed);
   }
-  /// What happens and what holds after it; each label leads to one node.
+  /// The events of an edge and the fluents that hold after it; each label leads to one node.
   Label label(const GraphEdge& edge) const {
     return {events_.true_names(graph_.events(edge.events)), state(edge.target)};
   }
@@ -151,7 +151,7 @@ class CommonPaths {
   const Side& second_;
 };
 
-/// The number of traces that both graphs have. They are compared by the names of what is true, so
+/// The number of traces that both graphs have. They are compared by the names of the true atoms, so
 /// both models must have the same ground fluents and events. Cost: pairs of nodes that a common
 /// prefix reaches, times their edges.
 mpz_class count_common(const TraceGraph& first, const CompiledModel& first_model,
@@ -200,7 +200,7 @@ std::string describe(const SharedAtom& atom, const SharedVocabulary& vocabulary)
          vocabulary.names[atom.name] + " " + std::to_string(atom.time);
 }
 
-/// One direction: what the first model has and the second has not.
+/// One direction: the traces that the first model has and the second does not have.
 class Direction {
  public:
   Direction(const CompiledModel& first, const CompiledModel& second, SharedVocabulary vocabulary,
@@ -246,8 +246,8 @@ class Direction {
         impossible ? std::optional(describe(*impossible, vocabulary_)) : std::nullopt;
   }
 
-  /// The finder at hand answers most questions for earlier timepoints; what it cannot tell is asked
-  /// of the truncated second model.
+  /// The present finder answers most questions for earlier timepoints; questions that it leaves
+  /// open go to the truncated second model.
   void find_earliest() {
     for (;;) {
       auto answer = Answer::kNone;

@@ -17,15 +17,15 @@
 
 namespace parallax::runtime {
 
-/// At least `value`; exactly so many if `exact`.
+/// At least `value`; exactly that many if `exact`.
 struct TraceNumber {
   mpz_class value;
   bool exact = false;
 };
 
-/// A trace that the other model has not. Of all such traces it is one that the other model rules
-/// out by the earliest timepoint (its clauses up to then contradict the trace up to then), and
-/// among those one with the fewest shared events before it.
+/// A trace that the other model does not have. Of all such traces it is one that the other model
+/// rules out by the earliest timepoint (its clauses up to then contradict the trace up to then),
+/// and among those one with the fewest shared events before it.
 struct Witness {
   Trace trace;
   Timepoint excluded_by = 0;
@@ -37,7 +37,7 @@ struct Witness {
   bool is_shortest = true;  // else the solver was stopped on the way
 };
 
-/// The traces of one model that the other has not, on what both observe.
+/// The traces of one model that the other does not have, compared on what both observe.
 struct OneSided {
   Answer answer = Answer::kUnknown;
   std::optional<Witness> witness;
@@ -50,26 +50,26 @@ struct TraceDifference {
   Timepoint horizon = 0;
   SharedVocabulary vocabulary;
   std::optional<TraceNumber> first_count, second_count;  // of all traces, where they were counted
-  OneSided lost;                                         // of the first, not of the second
-  OneSided gained;                                       // of the second, not of the first
+  OneSided lost;                                         // traces of the first, not of the second
+  OneSided gained;                                       // traces of the second, not of the first
 };
 
 struct DifferenceOptions {
   std::size_t list_limit = 200;        // traces that are found one by one to be counted
   std::size_t max_refinements = 200;   // DifferenceFinder
   GraphLimits graph = {2'000, 4'000};  // for counting beyond `list_limit`
-  /// Without witnesses, which take more time than to count.
+  /// No witnesses, which take more time than counting.
   bool counts_only = false;
-  /// One difference is enough: nothing is counted, and where a trace was lost none that was gained
-  /// is looked for.
+  /// One difference is enough: nothing is counted, and gained traces are sought only if none was
+  /// lost.
   bool any_difference = false;
   /// By origin of each model: belongs to an edited axiom.
   std::vector<bool> first_edited, second_edited;
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// A model that is compared with several others. What was found out about it for one of them is
-/// kept for the next.
+/// A model that is compared with several others. Results about it are kept from one comparison to
+/// the next.
 class ComparedModel {
  public:
   /// The model outlives the object.
@@ -77,7 +77,7 @@ class ComparedModel {
   const CompiledModel& model() const { return *model_; }
 
   const CompiledModel& up_to(Timepoint horizon);
-  /// Of the model up to there.
+  /// Definitions of the model up to that horizon.
   std::shared_ptr<const Definitions> definitions(const SharedVocabulary& vocabulary,
                                                  std::optional<Literal> SharedAtom::*side,
                                                  Timepoint horizon, const std::atomic<bool>* stop);

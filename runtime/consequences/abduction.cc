@@ -28,7 +28,7 @@ SolveStatus Explanations::find_within(std::size_t size) {
   return find_.solve(n_, assumptions);
 }
 
-/// The next set, of the smallest size, that may be followed by what was observed.
+/// The next set of abducibles, of the smallest size, that admits the observation.
 std::optional<std::vector<Literal>> Explanations::candidate() {
   while (true) {
     auto status = find_within(size_);

@@ -23,7 +23,7 @@ class Explanations {
   /// other one, or the solver was stopped.
   std::optional<std::vector<Literal>> next();
   bool exhausted() const { return exhausted_; }
-  /// Sets that may but need not be followed by what was observed: they explain nothing.
+  /// Number of sets that admit the observation but do not entail it: they explain nothing.
   std::int64_t possible_only() const { return possible_only_; }
 
  private:

@@ -8,7 +8,7 @@
 
 namespace parallax::runtime {
 
-/// In which of some traces an atom is true.
+/// In which share of the traces an atom is true.
 enum class Extent : std::uint8_t {
   kNone,
   kSome,  // in one, and not in another
@@ -18,9 +18,9 @@ enum class Extent : std::uint8_t {
   kUndecided,  // the solver was stopped
 };
 
-/// What the traces of a model have in common: its backbone and beyond. Traces end at the horizon,
-/// or where state constraints hold for the first time; of an atom those count that have its
-/// timepoint.
+/// Facts that the traces of a model have in common: its backbone and beyond. Traces end at the
+/// horizon, or where state constraints hold for the first time; for an atom only traces that have
+/// its timepoint count.
 struct Consequences {
   /// One for each atom asked about.
   std::vector<Extent> extents;
@@ -31,7 +31,7 @@ struct Consequences {
 
 enum class Asked : std::uint8_t {
   kAllAndSome,
-  kAll,  // what is in all traces; of the rest no more is found out than that
+  kAll,  // only which atoms are true in all traces
 };
 
 /// Asks about HoldsAt and Happens atoms. Every valuation found settles all atoms that differ from

@@ -15,8 +15,8 @@ class SizeBound {
   /// `session` outlives the object.
   SizeBound(SolverSession& session, std::vector<Literal> literals, std::size_t largest);
   std::size_t largest() const { return largest_; }
-  /// Assumed, it forbids more than `most`, which is below `largest`; none where so many there are
-  /// not.
+  /// The literal that, assumed, forbids more than `most`, which is below `largest`; none if there
+  /// are not that many.
   std::optional<Literal> at_most(std::size_t most) const {
     return most < outputs_.size() ? std::optional(~outputs_[most]) : std::nullopt;
   }

@@ -198,7 +198,7 @@ void CubeSolver::run_round(std::int64_t conflicts) {
   }
 }
 
-/// What the round has decided of the whole question.
+/// Answer to the whole question according to this round; none: it is still open.
 std::optional<SolveStatus> CubeSolver::answer() {
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
     if (lanes_[i].status != SolveStatus::kSatisfiable) continue;
@@ -223,7 +223,7 @@ bool CubeSolver::refute(Lane& lane) {
     if (lane.solver->failed(literal)) blamed.push_back(literal);
   }
   const bool all = clause.empty();
-  if (all) failed_->clear();  // what else was refuted is of no matter
+  if (all) failed_->clear();  // other refuted cubes do not matter
   failed_->insert(failed_->end(), blamed.begin(), blamed.end());
   for (const auto literal : blamed) clause.push_back(~literal);
   refuted_.push_back(std::move(clause));
@@ -231,7 +231,7 @@ bool CubeSolver::refute(Lane& lane) {
   return all;
 }
 
-/// Every lane learns what the others did.
+/// Gives every lane the clauses that the others learned.
 void CubeSolver::exchange() {
   std::vector<std::vector<std::vector<Literal>>> learned;
   for (auto& lane : lanes_) learned.push_back(lane.solver->take_learned());

@@ -21,16 +21,16 @@ struct CubeOptions {
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// CaDiCaL for calls that are easy, several of them for those that are not. A call is first given
-/// to one solver. If it does not decide within `easy` conflicts, the question is split by one
-/// variable after the other, until every lane (a solver of its own) has a cube: literals that it
-/// assumes besides. A lane that has refuted its cube takes half of another one's. The lanes work in
-/// rounds of so many conflicts, and after each one exchange the short clauses that they learned.
-/// All is counted, nothing is timed: the answer, and the valuation found, is that of the first
-/// round in which a lane finds one, and there of the first lane, whatever the number of threads.
-/// Easy calls are answered as by make_cadical_solver, byte for byte. Memory: its own clauses once
-/// more, and from the first hard call on a solver for each lane. limit_conflicts and conflicts mean
-/// those of all lanes together; the last round may exceed a limit by a few.
+/// CaDiCaL for easy calls, several of them for hard ones. A call is first given to one solver. If
+/// it does not decide within `easy` conflicts, the question is split by one variable after the
+/// other, until every lane (a solver of its own) has a cube: literals that it assumes besides. A
+/// lane that has refuted its cube takes half of another one's. The lanes work in rounds of a fixed
+/// number of conflicts, and after each one exchange the short clauses that they learned. Work is
+/// counted, not timed: the answer, and the valuation found, is that of the first round in which a
+/// lane finds one, and there of the first lane, whatever the number of threads. Easy calls are
+/// answered as by make_cadical_solver, byte for byte. Memory: its own clauses once more, and from
+/// the first hard call on a solver for each lane. limit_conflicts and conflicts mean those of all
+/// lanes together; the last round may exceed a limit by a few.
 std::unique_ptr<SatSolver> make_cube_solver(const CubeOptions& options);
 
 /// `make_cube_solver` where somebody asked for `jobs` threads, else (0) `make_cadical_solver`.

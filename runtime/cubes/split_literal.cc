@@ -7,7 +7,7 @@ namespace {
 
 /// So many variables are tried for one choice.
 constexpr std::size_t kTried = 4096;
-/// And no further ones once so many literals were set.
+/// No further variables are tried once this many literals were set.
 constexpr std::size_t kMostSet = 4'000'000;
 
 }  // namespace

@@ -29,9 +29,9 @@ class ClausePropagation {
   /// Two of its literals are watched, the first two, unless it is shorter. While literals are set,
   /// these must be the ones that a return from the trail frees first.
   Clause add(std::span<const Code> literals);
-  /// Takes the clauses from `first` on away of which `keep` has none. Reasons and conflict follow
-  /// those that stay; what holds by a clause that goes keeps no reason. Returns the new places of
-  /// those that stay, in the order of `keep`, which is ascending.
+  /// Removes the clauses from `first` on that are not in `keep`. Reasons and conflict are updated
+  /// to the new places; a literal whose reason is removed keeps no reason. Returns the new places
+  /// of the clauses that stay, in the order of `keep`, which is ascending.
   std::vector<Clause> retain(Clause first, std::span<const Clause> keep);
   Clause end() const { return static_cast<Clause>(literals_.size()); }
 

@@ -5,7 +5,8 @@
 namespace parallax::runtime {
 namespace {
 
-/// What was learned of so few levels is short or close to it, and stays (Audemard and Simon 2009).
+/// Learned clauses of at most this many levels are short or close to it, and are kept (Audemard and
+/// Simon 2009).
 constexpr std::uint32_t kFewLevels = 2;
 constexpr std::size_t kNoDecision = static_cast<std::size_t>(-1);
 
@@ -111,7 +112,7 @@ bool ClauseSearch::flip() {
     if (level == 0) return false;
     const auto decided = levels_[level - 1].decided;
     back_to(level - 1);
-    // What holds in any case was perhaps noted on a level that was left.
+    // Learned units may have been set on a level that was left.
     if (!assume_learned()) continue;
     const auto other = 2 * order_[decided];
     if (!state_.is_open(other)) {
@@ -124,7 +125,7 @@ bool ClauseSearch::flip() {
   }
 }
 
-/// False: what was set before admits nothing.
+/// Sets the learned units. False: the values set before admit nothing.
 bool ClauseSearch::assume_learned() {
   for (const auto unit : learned_units_) {
     const auto literal = *state_.literals(unit);
@@ -133,7 +134,7 @@ bool ClauseSearch::assume_learned() {
   return state_.propagate();
 }
 
-/// Other values of what is not projected make no other valuation.
+/// Other values of variables that are not projected make no other valuation.
 void ClauseSearch::leave_unprojected() {
   auto level = levels_.size();
   while (level > 0 && levels_[level - 1].decided != kNoDecision &&
@@ -150,7 +151,7 @@ bool ClauseSearch::resolve_conflict() {
   const bool is_spent = levels_.back().is_second;
   const auto learned = learn();
   if (is_spent) {
-    // It follows from what was set before, but that has been searched with this value only.
+    // It follows from the values set before, but those have been searched with this value only.
     if (!flip()) return false;
   } else {
     std::size_t bound = levels_.size();
@@ -243,8 +244,8 @@ bool ClauseSearch::is_implied(Code c) const {
   return true;
 }
 
-/// The half of what was learned that speaks of the most levels goes, the older first; what holds by
-/// it stays, and so does what speaks of few.
+/// Drops the half of the learned clauses that have the most levels, the older first. Clauses that
+/// are reasons stay, and so do clauses of few levels.
 void ClauseSearch::forget() {
   std::vector<Learned> ranked = learned_;
   std::stable_sort(ranked.begin(), ranked.end(), [](const Learned& a, const Learned& b) {

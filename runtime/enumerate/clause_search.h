@@ -11,12 +11,12 @@ namespace parallax::runtime {
 
 /// The valuations of some variables that a set of clauses admits, one by one, by search: the
 /// variables in order, false first, with unit propagation, and clauses learned from conflicts
-/// (first unique implication point, Marques-Silva and Sakallah 1999). No clause excludes what was
-/// found: the search goes back to the last variable that tells valuations apart and has another
+/// (first unique implication point, Marques-Silva and Sakallah 1999). No clause excludes earlier
+/// answers: the search goes back to the last variable that tells valuations apart and has another
 /// value left, and while it has that value, conflicts lead no further back (Gebser, Kaufmann and
-/// Schaub 2009). So an answer costs the same however many there were before. The order is fixed,
-/// and a solver that chooses its own may decide in time what the search does not; the budget says
-/// when to turn to it.
+/// Schaub 2009). So an answer costs the same however many there were before. The order is fixed; a
+/// solver that chooses its own order may decide quickly where the search does not, and the budget
+/// says when to turn to it.
 class ClauseSearch {
  public:
   enum class Status : std::uint8_t {
@@ -53,7 +53,7 @@ class ClauseSearch {
   };
   struct Learned {
     Clause clause;
-    std::uint32_t levels;  // that its literals were set on (Audemard and Simon 2009)
+    std::uint32_t levels;  // number of levels of its literals (Audemard and Simon 2009)
   };
 
   void enter(std::size_t decided, bool is_second);
@@ -77,10 +77,10 @@ class ClauseSearch {
   std::vector<Clause> learned_units_;
   std::size_t most_learned_;
   std::vector<std::uint32_t> order_;  // variables, the projected ones first
-  std::size_t projected_ = 0;         // so many
+  std::size_t projected_ = 0;         // number of projected variables
   std::vector<Level> levels_;
   std::vector<std::uint32_t> level_of_;  // by variable that is set: 0 before the first level
-  std::size_t noted_ = 0;                // so much of the trail has a level
+  std::size_t noted_ = 0;                // length of the trail whose levels are noted
   std::vector<bool> seen_;               // by variable, in a conflict
   std::vector<Code> made_;               // the clause that is being learned
   bool is_over_ = true;                  // there are no more valuations

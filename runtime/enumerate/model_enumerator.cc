@@ -26,7 +26,7 @@ std::optional<Trace> ModelEnumerator::next() {
   auto found = in_order(*session_, n, assumptions, order_, wanted_);
   if (!found) return std::nullopt;
   has_more_ = found->has_others;
-  // What is left without the first trace tells constants apart.
+  // The traces that are left without the first one tell constants apart.
   if (breaker_ != nullptr) std::exchange(breaker_, nullptr)->retire();
   session_->require_model(n);
   auto trace = decode_trace(session_->model(), symbols_, n,
@@ -181,7 +181,7 @@ std::unique_ptr<TraceTree> make_guarded_blocking(SolverSession& session, Distinc
 
 namespace {
 
-/// The flag is looked at after so many conflicts.
+/// Number of conflicts between two looks at the stop flag.
 constexpr std::int64_t kSlice = 1000;
 
 }  // namespace

@@ -88,9 +88,9 @@ std::unique_ptr<TraceTree> make_trace_tree(SolverSession& session, Distinct dist
 /// Begins with two levels, the halves of the horizon, which are halved in the same way.
 std::unique_ptr<TraceTree> make_guarded_blocking(SolverSession& session, Distinct distinct);
 
-/// The traces by search alone: the next one is where the search goes on. Nothing is kept of those
-/// before, and there is no solver to wait for; but what a goal far ahead rules out is tried all the
-/// same.
+/// The traces by search alone: the next one is where the search goes on. Earlier traces are not
+/// kept, and there is no solver to wait for; but prefixes that a goal far ahead rules out are tried
+/// all the same.
 class SearchTraces final : public TraceSource {
  public:
   /// Gives up where a trace costs more than `conflicts`. `model` outlives the traces; `stop` may be

@@ -40,7 +40,7 @@ std::optional<std::vector<Literal>> PathAdmission::facts(std::span<const Execute
                                                          std::span<const State> observed) const {
   const auto& model = *model_;
   std::vector<Literal> out;
-  // What has no atom is false in every execution.
+  // A fluent without an atom is false in every execution.
   const auto state = [&](const std::optional<Literal>& literal, bool wanted) {
     if (literal) out.push_back(wanted ? *literal : ~*literal);
     return literal.has_value() || !wanted;

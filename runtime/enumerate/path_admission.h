@@ -14,9 +14,9 @@
 
 namespace parallax::runtime {
 
-/// What became of one perform of a plan that was executed, or of one event of a trace.
+/// Outcome of one perform of a plan that was executed, or of one event of a trace.
 struct ExecutedPerform {
-  std::optional<compiler::PlanStepId> step;  // none: of a trace, and nothing else happens then
+  std::optional<compiler::PlanStepId> step;  // none: an event of a trace, and no other happens then
   std::string event;                         // printed: "Go(r2)"
   bool succeeded = false;
   std::string returned;  // the object that it found; may be empty
@@ -33,18 +33,17 @@ class PathAdmission {
 
   /// `session` outlives the object.
   explicit PathAdmission(SolverSession& session);
-  /// To be asked for facts only. `model` outlives the object.
+  /// For `facts` only. `model` outlives the object.
   explicit PathAdmission(const CompiledModel& model);
 
-  /// What is the case in an execution that `admits` asks for. None: something that is false in
-  /// every execution.
+  /// Facts of an execution that `admits` asks for. None: one of them is false in every execution.
   std::optional<std::vector<Literal>> facts(std::span<const ExecutedPerform> performs,
                                             std::size_t outcomes,
                                             std::span<const State> observed) const;
-  /// Has the model an execution that performs this from timepoint 0 on, while no other event
-  /// happens that no axiom can demand, whose first `outcomes`
-  /// performs end like that, and that goes through these states? `observed` begins at timepoint 0
-  /// and may end early. One solver call; undecided if the solver was stopped.
+  /// Does the model have an execution that performs these from timepoint 0 on, whose first
+  /// `outcomes` performs end like that, and that goes through these states? Other events may happen
+  /// only if an axiom can demand them. `observed` begins at timepoint 0 and may end early. One
+  /// solver call; undecided if the solver was stopped.
   base::Known admits(std::span<const ExecutedPerform> performs, std::size_t outcomes,
                      std::span<const State> observed);
 
@@ -57,7 +56,7 @@ class PathAdmission {
   compiler::AtomIndex index_;
   std::map<std::string, std::uint32_t, std::less<>> events_;
   std::vector<std::uint32_t> undemanded_;   // slots of events
-  std::vector<std::uint32_t> event_slots_;  // of all
+  std::vector<std::uint32_t> event_slots_;  // of all events
 };
 
 /// The states at timepoint 0 that the axioms about it admit, each as the true ones of `fluents`,
@@ -70,7 +69,7 @@ struct InitialStates {
 InitialStates initial_states(const CompiledModel& model, std::unique_ptr<SatSolver> solver,
                              std::span<const compiler::FluentId> fluents, std::size_t limit);
 
-/// What a user's predicate without time says, by its printed name; undecided if the model leaves it
+/// Value of a user's predicate without time, by its printed name; undecided if the model leaves it
 /// open or the solver was stopped. At most two solver calls.
 base::Known predicate_value(SolverSession& session, std::string_view name);
 

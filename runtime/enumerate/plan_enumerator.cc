@@ -37,8 +37,8 @@ PlanEnumerator::PlanEnumerator(SolverSession& session, const PlanEnumeratorOptio
   }
 }
 
-/// The assumption under which only representatives are looked for, at the length at hand. Once
-/// something was found, what is left tells constants apart.
+/// The assumption that restricts the search to representatives, at the length at hand. Once a trace
+/// was found, the remaining traces tell constants apart.
 std::optional<Literal> PlanEnumerator::breaking() {
   if (!breaker_ || (found_ > 0 && !options_.representatives)) return std::nullopt;
   session_->load(n_);
@@ -207,7 +207,7 @@ base::Known PlanEnumerator::admits(
     const Trace& trace, const std::vector<std::map<compiler::FluentId, bool>>& observed) {
   const auto n = trace.length();
   auto assumptions = hit_at(n);
-  // What has no variable is false in every trace.
+  // A fluent without a variable is false in every trace.
   for (const auto& state : observed) {
     for (const auto& [fluent, holds] : state) {
       if (holds && !session_->model().fluents[fluent.index()].slot) return base::Known::kNo;

@@ -15,7 +15,7 @@
 
 namespace parallax::runtime {
 
-/// What is known of the traces that were not reported.
+/// State of knowledge about the traces that were not reported.
 enum class Exploration : std::uint8_t {
   kStopped,            // nobody asked for all of them yet, or the solver gave up
   kCompleteUpToBound,  // there are longer executions than the horizon admits
@@ -28,11 +28,11 @@ struct PlanEnumeratorOptions {
   bool all_hits = false;
   /// Every initial state is a trace of its own, not only every key.
   bool split_initial = false;
-  /// Of the traces of one length: shorter ones come first in any case. With any order any initial
-  /// state stands for a trace.
+  /// Order of the traces of one length; shorter ones come first in any case. With any order any
+  /// initial state stands for a trace.
   TraceOrder order = TraceOrder::kCanonical;
-  /// Of the session's model. Whether there is a first trace is looked for among representatives of
-  /// orbits; with `representatives` all are, of each orbit of keys at least one. Null: as they are.
+  /// Symmetries of the session's model. The first trace is sought among representatives of orbits;
+  /// with `representatives` all are, at least one of each orbit of keys. Null: no symmetry is used.
   const ModelSymmetry* symmetry = nullptr;
   bool representatives = false;
 };
@@ -72,7 +72,7 @@ class PlanEnumerator {
   /// these fluents has the value given, and which it can continue? At most two solver calls.
   base::Known admits(const Trace& trace,
                      const std::vector<std::map<compiler::FluentId, bool>>& observed);
-  /// Of the traces' ids.
+  /// Names of the ids in the traces.
   const Symbols& symbols() const { return symbols_; }
 
  private:

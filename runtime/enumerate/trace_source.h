@@ -10,27 +10,28 @@
 
 namespace parallax::runtime {
 
-/// Which atoms tell two traces apart.
+/// Atoms that distinguish two traces.
 enum class Distinct : std::uint8_t {
   kObservable,  // HoldsAt and Happens
   kAll,         // also ReleasedAt and user predicates, as the 2005 reasoner counts models
 };
 
-/// Which trace comes next.
+/// Order of the traces.
 enum class TraceOrder : std::uint8_t {
   kCanonical,
-  /// The one that the solver finds first, for whoever wants one witness: to prove that none comes
-  /// before it can cost many times as much. The same on every machine with the same solver.
+  /// The trace that the solver finds first, for callers that want one witness: to prove that none
+  /// comes before it can cost many times as much. The same on every machine with the same solver.
   kAny,
 };
 
-/// What the search for traces took.
+/// Statistics of a search for traces.
 struct SourceStats {
   std::string strategy;                     // "blocking", "guarded", "tree", "graph"
   std::string remark;                       // why not the graph, if it would have paid
   std::size_t states = 0, transitions = 0;  // of the graph
   std::int64_t solve_calls = 0;
-  /// That there is no trace was found for one of each orbit only (runtime/symmetry).
+  /// The absence of a trace was proved for one representative of each orbit only
+  /// (runtime/symmetry).
   bool by_symmetry = false;
 };
 
@@ -42,9 +43,10 @@ class TraceSource {
   TraceSource(const TraceSource&) = delete;
   TraceSource& operator=(const TraceSource&) = delete;
   virtual ~TraceSource() = default;
-  /// The next trace, or none. `exhausted()` tells whether none means that there is none.
+  /// The next trace, or none. After none, `exhausted()` tells whether it is proved that no trace is
+  /// left.
   virtual std::optional<Trace> next() = 0;
-  /// Appends the next trace as `format` writes it; false: there is none.
+  /// Appends the next trace as `format` writes it; false if next() gives none.
   virtual bool print_next(const TraceFormat& format, std::string& out) {
     const auto trace = next();
     if (trace) out += format_trace(format, *trace);

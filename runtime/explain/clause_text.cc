@@ -95,7 +95,7 @@ std::string ClauseText::meaning(Literal literal, Budget& budget) const {
   return text;
 }
 
-/// Puts what a disjunction stands for in its place. In the order of time, then by bytes.
+/// Replaces a disjunction by its parts. In the order of time, then by bytes.
 std::vector<Literal> ClauseText::flattened(std::span<const Literal> literals) const {
   std::vector<Literal> flat, open(literals.rbegin(), literals.rend());
   while (!open.empty() && flat.size() < kMaxParts) {
@@ -125,8 +125,7 @@ std::string ClauseText::formula(std::span<const Literal> literals, Budget& budge
   std::string before, after;
   for (const auto literal : flattened(literals)) {
     if (budget.parts-- <= 0) return before + (before.empty() ? "" : " -> ") + after + " | ...";
-    // What is denied is said before the arrow; an auxiliary as what it draws,
-    // behind it.
+    // Negated atoms are written before the arrow; auxiliaries, by their meaning, after it.
     const bool denied = !literal.is_positive() && !is_auxiliary(literal.var());
     auto& side = denied ? before : after;
     if (!side.empty()) side += denied ? " & " : " | ";

@@ -10,8 +10,8 @@
 
 namespace parallax::runtime {
 
-/// Writes clauses as a reader of the model would: atoms by their names, auxiliaries by what they
-/// stand for, a clause as an implication where it has negative literals.
+/// Writes clauses as a reader of the model would: atoms by their names, auxiliaries by their
+/// definitions, a clause as an implication where it has negative literals.
 class ClauseText {
  public:
   /// `model` outlives the object. Linear in the clauses.
@@ -26,7 +26,7 @@ class ClauseText {
   bool is_auxiliary(std::int32_t variable) const {
     return auxiliary_[static_cast<std::size_t>(variable)];
   }
-  /// The clauses that say what follows from an auxiliary literal.
+  /// The clauses that define what an auxiliary literal implies.
   const std::vector<std::size_t>& definitions(compiler::Literal literal) const;
 
  private:

@@ -9,19 +9,21 @@
 
 namespace parallax::runtime {
 
-/// A minimal set: its groups contradict each other, and without any one of them the rest do not.
+/// Minimal sets of groups: the groups of a set contradict each other, and without any one of them
+/// the rest do not.
 struct MinimalSets {
   std::vector<IndexSet> sets;  // by size, then by their elements; empty: there is no contradiction
-  /// Of smallest_set: no contradiction has fewer groups. Of all_minimal_sets: there are no others.
+  /// From smallest_set: no contradiction has fewer groups. From all_minimal_sets: there are no
+  /// others.
   bool proven = false;
-  /// Every contradiction has at least so many groups.
+  /// Lower bound on the number of groups in a contradiction.
   std::size_t lower_bound = 0;
   /// The solver was stopped before there was a set, or a proof that there is none.
   bool unknown = false;
 };
 
-/// Makes a contradictory set minimal by leaving out one member after the other; what the solver did
-/// not use goes as well. False if the solver was stopped, or the effort (null: any) did not
+/// Makes a contradictory set minimal by leaving out one member after the other, and members that
+/// the solver did not use. False if the solver was stopped, or the effort (null: any) did not
 /// suffice; the set is then contradictory, and as small as it came.
 bool shrink(GroupSolver& solver, IndexSet& contradiction, Effort* effort = nullptr);
 
@@ -37,11 +39,12 @@ MinimalSets all_minimal_sets(GroupSolver& solver, std::size_t limit, const std::
 
 /// The clauses behind one set of groups.
 struct GroundContradiction {
-  /// Indices into the model's clauses, by group and then by timepoint, definitions left out: no one
-  /// of them can go, unless the search was stopped or the effort spent (then `minimal` is false).
+  /// Indices into the model's clauses, by group and then by timepoint, definitions left out. None
+  /// of them can be left out, unless the search was stopped or the effort spent (then `minimal` is
+  /// false).
   std::vector<std::size_t> clauses;
   bool minimal = false;
-  /// What the checker says of a proof that these clauses contradict each other.
+  /// Report of the checker on a proof that these clauses contradict each other.
   ProofReport proof;
 };
 

@@ -67,7 +67,7 @@ void ExecutionFormula::choose_length(
 
 namespace {
 
-/// File, begin, end; and for what has no place the number of its origin.
+/// File, begin, end; without a place, the number of the origin.
 using Key = std::tuple<std::size_t, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t,
                        std::uint32_t>;
 

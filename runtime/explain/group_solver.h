@@ -13,7 +13,7 @@
 
 namespace parallax::runtime {
 
-/// Facts that are not in question: what was seen of one execution.
+/// Facts that are not in question: the observations of one execution.
 struct Observed {
   compiler::Timepoint length = 0;  // it went so far
   std::vector<compiler::Literal> facts;
@@ -24,7 +24,7 @@ struct Observed {
 /// Without state constraints a trace satisfies every clause. With constraints it ends at some
 /// timepoint from 1 on at which they hold, and satisfies the clauses up to there: variables beyond
 /// the model's choose the length, and a clause of timepoint t > 0 binds if the trace reaches t.
-/// With an observation the length is what was seen, and its facts hold.
+/// With an observation the length is the observed one, and its facts hold.
 class ExecutionFormula {
  public:
   /// `model` outlives the object.
@@ -37,7 +37,7 @@ class ExecutionFormula {
   bool is_definition(std::size_t clause) const { return model_.clause_is_definition[clause]; }
   /// Clause `index` of the model; the view lasts until the next call.
   std::span<const compiler::Literal> clause(std::size_t index);
-  /// The length, the definitions, what was observed.
+  /// Visits the clauses that always hold: the length, the definitions, the observed facts.
   void for_each_always(const std::function<void(std::span<const compiler::Literal>)>& visit);
 
  private:
@@ -52,8 +52,8 @@ class ExecutionFormula {
   std::vector<compiler::Literal> clause_;
 };
 
-/// The origins of a model put together by the text they stand for: what an explanation names is a
-/// place in a source file. State invariants belong to no group: they follow from the others.
+/// The origins of a model grouped by their source text, since an explanation names places in source
+/// files. State invariants belong to no group: they follow from the others.
 struct AxiomGroups {
   static constexpr std::uint32_t kNone = UINT32_MAX;
   std::vector<std::vector<std::uint32_t>> origins;  // by group, ascending; groups in source order
@@ -64,7 +64,7 @@ struct AxiomGroups {
 /// Groups the origins that have clauses.
 AxiomGroups group_axioms(const compiler::CompiledModel& model);
 
-/// What the solver may spend on making sets smaller, in conflicts, so that the same is reached on
+/// Budget of the solver for making sets smaller, in conflicts, so that the result is the same on
 /// every machine. One question gets at most a tenth of it.
 class Effort {
  public:
@@ -72,9 +72,9 @@ class Effort {
       : left_(conflicts), share_(std::max<std::int64_t>(conflicts / 10, 1)) {}
 
   bool is_spent() const { return left_ <= 0; }
-  /// Of the next question.
+  /// Conflicts that the next question may take.
   std::int64_t share() const { return std::min(left_, share_); }
-  /// Every question counts, however easy it was.
+  /// Charges a question; each one counts, however easy it was.
   void spend(std::int64_t conflicts) { left_ -= conflicts + 1; }
 
  private:

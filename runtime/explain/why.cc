@@ -72,8 +72,8 @@ class Explainer {
            atom.time.value_or(0) > 0 && !premises(reason, fact).empty();
   }
 
-  /// The facts that make the other literals of a clause false; auxiliaries give way to what decided
-  /// them.
+  /// The facts that make the other literals of a clause false. An auxiliary is replaced by the
+  /// facts that decided it.
   std::vector<Literal> premises(std::size_t clause, Literal fact) const {
     std::vector<Literal> found;
     std::set<std::int32_t> seen = {fact.var()};
@@ -96,8 +96,8 @@ class Explainer {
     return found;
   }
 
-  /// What decided an auxiliary. That an event did not happen is a better reason than that it would
-  /// have had no effect.
+  /// The clause that decided an auxiliary. That an event did not happen is a better reason than
+  /// that it would have had no effect.
   std::size_t reason_of(Literal auxiliary, Literal fact) const {
     for (const auto clause : derivation_.supports(auxiliary, derivation_.rank(fact.var()))) {
       const auto literals = model_.clauses[clause];
@@ -128,7 +128,7 @@ class Explainer {
     steps_.emplace(fact.var(), std::move(step));
   }
 
-  /// What takes a fluent out of inertia is behind the choice of its value.
+  /// The release of a fluent from inertia, if it is behind the choice of the fluent's value.
   std::optional<Literal> release_of(Literal fact) const {
     const auto atom = model_.atom(fact.var());
     if (atom.kind != AtomKind::kHoldsAt || atom.time.value_or(0) == 0) return std::nullopt;
@@ -340,7 +340,7 @@ void Derivation::propagate() {
   }
 }
 
-/// What is true is chosen before what is false: an event rather than the absence of the others.
+/// Chooses true variables before false ones: an event rather than the absence of the others.
 void Derivation::choose(std::uint32_t stage) {
   for (const bool wanted : {true, false}) {
     for (const auto variable : choices_at_[stage]) {

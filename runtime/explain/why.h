@@ -10,13 +10,13 @@
 
 namespace parallax::runtime {
 
-/// The truth of a trace told forwards: every literal that is true in it is derived from literals
-/// derived before it by one clause, or is a choice that what came before leaves open.
+/// The truth of a trace told forwards: every literal that is true in it is derived by one clause
+/// from literals derived before it, or is a choice that the earlier literals leave open.
 ///
 /// Time goes by stages: the states of a timepoint, then its events. A clause takes part from the
 /// stage of its latest atom on, so that nothing is derived from the future. Within a stage effects
-/// come first, then inertia, then what is stated outright, then the other axioms, then completion;
-/// what is still open is chosen as the trace has it. Linear in the clauses.
+/// come first, then inertia, then stated facts, then the other axioms, then completion; literals
+/// that are still open are chosen as the trace has them. Linear in the clauses.
 class Derivation {
  public:
   static constexpr std::size_t kChosen = SIZE_MAX;
@@ -38,8 +38,8 @@ class Derivation {
   std::size_t rank(std::int32_t variable) const {
     return ranks_[static_cast<std::size_t>(variable) - 1];
   }
-  /// Further clauses that force the literal by what was known before its stage: their other
-  /// literals are false and were so earlier. Definitions are not among them.
+  /// Further clauses that force the literal by facts known before its stage: their other literals
+  /// are false and were so earlier. Definitions are not among them.
   std::vector<std::size_t> other_reasons(compiler::Literal literal) const;
   /// The clauses with this literal whose other literals are false and were known to be so before
   /// `rank`.
@@ -94,7 +94,7 @@ enum class WhyKind : std::uint8_t {
   kUndecided    // forced or chosen: the solver was stopped
 };
 
-/// One fact of a chain, and what it follows from.
+/// One fact of a chain, and its premises.
 struct WhyStep {
   compiler::Literal fact;
   WhyKind kind;
@@ -115,8 +115,7 @@ struct WhyOptions {
 };
 
 /// The chain of facts behind one that is true in a trace: earliest first, the fact itself last,
-/// each once, premises before what follows from them. `values` as for Derivation, `fact` is true in
-/// it.
+/// each once, premises before conclusions. `values` as for Derivation, `fact` is true in it.
 std::vector<WhyStep> explain_fact(const compiler::CompiledModel& model, compiler::Timepoint n,
                                   const std::vector<bool>& values, compiler::Literal fact,
                                   const WhyOptions& options = {});

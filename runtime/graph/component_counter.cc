@@ -15,7 +15,8 @@ constexpr std::uint32_t kUnseen = 0xffffffffU;
 constexpr std::uint32_t kAlone = 0xfffffffeU;      // a variable of no clause
 constexpr std::uint32_t kSatisfied = 0xfffffffdU;  // a clause that is true
 
-/// Of the graph in which variables that share a clause are neighbours, while it is taken apart.
+/// Most edges while variables are eliminated from the graph in which those that share a clause are
+/// neighbours.
 constexpr std::size_t kMostEdges = 20'000'000;
 
 /// Ascending numbers as differences, seven bits a byte.
@@ -139,7 +140,7 @@ std::optional<mpz_class> ComponentCounter::count(std::span<const Literal> assump
     }
     frame.total += frame.product;
     if (frames_.size() == 1) return frame.total;
-    // What is not told apart only has to exist.
+    // Hidden variables are not told apart: it is enough that they have some values.
     const bool is_hidden = frame.component.variables.front() >= projected_;
     if (frame.is_last || (is_hidden && frame.total > 0)) {
       leave();
@@ -182,7 +183,7 @@ void ComponentCounter::enter(Component component, const Key& key) {
   take_value(frame, false);
 }
 
-/// Of its first variable.
+/// Sets the first variable of the frame's component to the value.
 void ComponentCounter::take_value(Frame& frame, bool value) {
   state_.undo(frame.trail);
   frame.parts.clear();
@@ -200,8 +201,8 @@ void ComponentCounter::leave() {
   frames_.back().product *= count;
 }
 
-/// The parts of what is open of `whole`, the smallest last; the number of valuations of the
-/// variables that no clause speaks of any more.
+/// The open parts of `whole`, the smallest last. Returns the number of valuations of the variables
+/// that occur in no clause any more.
 mpz_class ComponentCounter::split(const Component& whole, std::vector<Component>& parts) {
   for (const auto ranked : whole.variables) part_of_[ranked_[ranked]] = kUnseen;
   for (const auto clause : whole.clauses) part_of_clause_[clause] = kUnseen;

@@ -17,10 +17,10 @@ namespace parallax::runtime {
 
 /// Counts the valuations of some variables that a set of clauses admits, whatever its shape: sets
 /// the variables in order, both ways; clauses that share no open variable any more are counted
-/// apart, and what was counted once is known when it comes again (component caching: Bayardo and
-/// Pehoushek 2000; Sang et al. 2004). A component is known again by the SHA-256 of its variables
-/// and clauses. In the order of time that is what the layered graph does, but a clause that looks
-/// far ahead becomes part of what is remembered. Exact.
+/// apart, and counts are kept for components that come again (component caching: Bayardo and
+/// Pehoushek 2000; Sang et al. 2004). A component is recognized by the SHA-256 of its variables and
+/// clauses. With variables in the order of time this does the same as the layered graph, but a
+/// clause that looks far ahead becomes part of the cache key. Exact.
 class ComponentCounter {
  public:
   /// Counted work and memory, of all calls together: the same on every machine.
@@ -57,7 +57,7 @@ class ComponentCounter {
   };
   struct Component {
     std::vector<std::uint32_t> variables;  // open ones, by rank, ascending
-    std::vector<std::uint32_t> clauses;    // that are not true yet, ascending
+    std::vector<std::uint32_t> clauses;    // clauses that are not true yet, ascending
     std::size_t size() const { return variables.size() + clauses.size(); }
   };
   /// A component that is being counted, or the whole.
@@ -68,7 +68,7 @@ class ComponentCounter {
     bool is_last = false;          // there is no further value
     mpz_class total;               // of the values that were counted
     mpz_class product;             // of the parts of this value that were counted
-    std::vector<Component> parts;  // of this value that are still to be counted
+    std::vector<Component> parts;  // parts of this value that are still to be counted
   };
 
   bool is_within(const Limits& limits, const std::atomic<bool>* stop) const;
@@ -87,7 +87,7 @@ class ComponentCounter {
   std::vector<Literal> told_apart_;                 // `projected`
   bool is_reordered_ = false;
   std::vector<std::uint32_t> rank_, ranked_;             // variable to rank, and back
-  std::size_t projected_ = 0;                            // so many have the first ranks
+  std::size_t projected_ = 0;                            // projected variables have the first ranks
   std::vector<std::vector<std::uint32_t>> clauses_of_;   // by variable
   std::vector<std::uint32_t> part_of_, part_of_clause_;  // while a component is split
   std::vector<std::uint32_t> reached_;                   // variables, while a part is gathered

@@ -6,8 +6,8 @@
 namespace parallax::runtime {
 namespace {
 
-/// Events decide what follows, so that states that cannot be reached are not met; but a clause that
-/// looks far may make too many of them differ.
+/// Events determine later states, so that states that cannot be reached are not met; but a clause
+/// that looks far may make too many of them differ.
 constexpr ComponentCounter::Limits kInOrderOfTime = {200'000'000, 300'000, 50'000'000};
 /// Some tenths of a second. The limits are of all calls together.
 constexpr ComponentCounter::Limits kTrialInOrderOfTime = {10'000'000, 20'000, 5'000'000};

@@ -19,7 +19,7 @@ using compiler::CompiledModel;
 enum class ComponentEffort : std::uint8_t { kTrial, kFull };
 
 /// The traces of a model whatever its clauses tie together, by their numbers: counted by
-/// components, and the k-th one found by what is left to count when its atoms are set one after the
+/// components. The k-th one is found from the remaining counts when its atoms are set one after the
 /// other.
 class ComponentTraces final : public TraceSource {
  public:

@@ -62,7 +62,7 @@ class FarAtoms {
         written.push_back(moved(is_far(literal, last) ? of_fixed(literal) : literal));
       }
       add(written, model_.clause_origins[c], out);
-      // The clause that needs the variable also says what it is.
+      // The clause that needs the variable is also the origin of its definition.
       for (const auto literal : model_.clauses[c]) {
         if (!is_far(literal, last)) continue;
         const auto fixed = moved(of_fixed(literal));

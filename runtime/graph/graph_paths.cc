@@ -10,7 +10,7 @@ namespace {
 
 using compiler::AtomKind;
 
-/// Pieces are kept up to so many bytes.
+/// Most bytes of pieces that are kept.
 constexpr std::size_t kPieces = std::size_t{64} << 20U;
 
 template <typename Id>

@@ -13,8 +13,8 @@
 
 namespace parallax::runtime {
 
-/// The traces as the paths of a layered graph, in canonical order and without a solver call. Which
-/// path is the k-th is known from the number of ways on from each node.
+/// The traces as the paths of a layered graph, in canonical order and without a solver call. The
+/// k-th path is found from the number of ways on from each node.
 class GraphPaths final : public TraceSource {
  public:
   /// Why the graph cannot list its traces with everything that a trace shows; empty: it can.
@@ -22,10 +22,11 @@ class GraphPaths final : public TraceSource {
 
   /// `graph` has no obstacle; it and `model` outlive the paths.
   GraphPaths(const TraceGraph& graph, const CompiledModel& model);
-  /// The next trace becomes the one that `before` others precede, or none if there is no such one.
+  /// Makes the trace that `before` others precede the next one; if there is no such trace, there is
+  /// no next one.
   void seek(mpz_class before);
   std::optional<Trace> next() override;
-  /// What the trace shares with the one before it is not made again.
+  /// Reuses the text of the timepoints that the trace shares with the one before it.
   bool print_next(const TraceFormat& format, std::string& out) override;
   bool exhausted() const override { return is_at_end_; }
   SourceStats stats() const override;
@@ -37,7 +38,7 @@ class GraphPaths final : public TraceSource {
     std::size_t edge = 0;
     std::size_t printed = 0;  // length of `body_` with this timepoint
   };
-  /// What a timepoint shows; `before` and `events` are one more than the index, 0 for none.
+  /// Contents of a timepoint; `before` and `events` are one more than the index, 0 for none.
   struct Shown {
     std::uint32_t before = 0, node = 0, events = 0;
     friend bool operator==(const Shown&, const Shown&) = default;

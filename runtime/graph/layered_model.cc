@@ -212,7 +212,7 @@ class Splitter {
     return origin.text.empty() ? to_string(origin.kind) : std::string_view(origin.text);
   }
 
-  /// Of a clause that fits into no window.
+  /// The reason why a clause fits into no window.
   std::string why_too_far(std::size_t c) const {
     std::vector<std::int64_t> times;  // of its events
     for (const auto literal : model_.clauses[c]) {
@@ -229,8 +229,8 @@ class Splitter {
                        text_of(c));
   }
 
-  /// Of a clause that has a window, and a variable without a timepoint that belongs to another one:
-  /// the first clause that put it there takes part.
+  /// The reason why a clause is tied to another window than its own, by a variable without a
+  /// timepoint: names the first clause that put the variable there.
   std::string why_tied(std::size_t c, std::int64_t window, std::size_t v) {
     for (std::size_t other = 0; other < c; ++other) {
       const auto there = window_of(model_.clauses[other]);
@@ -272,8 +272,8 @@ class Splitter {
 
   /// Auxiliaries of a state that need no single value in the two windows of that state: each window
   /// gets a copy with the clauses that define it. They are those that stand negated only in clauses
-  /// about the state alone: where one copy is true, what it stands for is, so the disjunction of
-  /// the copies serves both windows.
+  /// about the state alone: where one copy is true, its formula is, so the disjunction of the
+  /// copies serves both windows.
   void find_copied() {
     copied_.assign(model_.state_slots, false);
     for (std::uint32_t slot = 0; slot < model_.state_slots; ++slot) {
@@ -342,7 +342,7 @@ class Splitter {
     return open > 0 && open == carried;
   }
 
-  /// No step changes what is carried.
+  /// Adds clauses by which no step changes the carried slots.
   void keep_carried(WindowClauses& step) const {
     for (std::uint32_t k = 0; k < carried_.size(); ++k) {
       const auto before = static_cast<std::int32_t>(model_.state_slots + k + 1);
@@ -453,7 +453,7 @@ std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& 
   if (!tied) return split;
   auto again = Splitter(*tied, distinct, unit_values(*tied), ties).run();
   if (!std::holds_alternative<LayeredModel>(again)) return split;
-  // What was added is no atom of the model.
+  // Variables that were added are no atoms of the model.
   const auto is_added = [&](std::int32_t v) { return v > model.base(); };
   std::erase_if(std::get<LayeredModel>(again).true_fixed, is_added);
   return again;

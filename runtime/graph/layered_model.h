@@ -36,21 +36,21 @@ struct LayeredModel {
   std::vector<std::uint32_t> events;  // step slots of Happens, in declaration order
   /// Other state slots that one window can hand on to the next.
   std::vector<std::uint32_t> hidden;
-  /// Of the state slots behind those of the model: which fixed variable is carried there.
+  /// Fixed variables that are carried in the state slots behind those of the model, by slot.
   std::vector<std::int32_t> carried;
   /// State slots of ReleasedAt that are neither, though some clause mentions them.
   std::vector<std::uint32_t> loose_releases;
   WindowClauses start;
-  std::vector<WindowClauses> steps;      // those that differ
+  std::vector<WindowClauses> steps;      // each one once
   std::vector<std::uint32_t> step_at;    // by timepoint: index into `steps`
   std::vector<std::int32_t> true_fixed;  // fixed variables that are true in every trace
-  std::vector<std::int32_t> open_fixed;  // those whose value is not the same in every trace
+  std::vector<std::int32_t> open_fixed;  // fixed variables whose value differs between traces
   /// There are clauses that no window has, over fixed variables alone. They distinguish no traces,
-  /// but there is none if they cannot hold.
+  /// but if they cannot hold, there is no trace.
   bool has_unplaced = false;
 };
 
-/// What happens to variables without a timepoint that tie far windows together.
+/// Treatment of variables without a timepoint that tie far windows together.
 enum class FixedTies : std::uint8_t {
   kRefused,
   /// Each becomes a hidden slot of every state, behind those of the model, that no step changes;
@@ -62,9 +62,9 @@ inline constexpr std::size_t kMostCarried = 12;
 
 /// Splits the model into windows, or says why it cannot be split: "a clause of FILE:LINE spans
 /// timepoints 0 to 3". Fixed variables with a value of their own are replaced by it. Linear in the
-/// clauses, for each time that further variables have to be carried. `values`, as of unit_values,
-/// are those that fixed variables have; without them what unit propagation over the whole horizon
-/// finds.
+/// clauses, for each time that further variables have to be carried. `values` are the values of
+/// fixed variables, as from unit_values; by default those that unit propagation over the whole
+/// horizon finds.
 std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model,
                                                            Distinct distinct,
                                                            FixedTies ties = FixedTies::kRefused);

@@ -13,11 +13,11 @@
 namespace parallax::runtime {
 namespace {
 
-/// More than so many traces repay a graph that takes some seconds.
+/// For more traces than this, a graph that takes some seconds pays off.
 constexpr std::int64_t kFew = 1000;
-/// A trace that costs a search more conflicts than this is a solver's to find.
+/// Conflicts of a search for one trace; beyond them a solver takes over.
 constexpr std::int64_t kConflicts = 1000;
-/// That symmetry makes it easy to see that there is no trace shows within so many conflicts.
+/// Conflicts within which symmetry shows, where it makes that easy, that there is no trace.
 constexpr std::int64_t kEasy = 20'000;
 
 }  // namespace
@@ -27,7 +27,7 @@ ModelTraces::ModelTraces(const CompiledModel& model, TraceQuery query)
   switch (query.strategy) {
     case Strategy::kAuto:
       if (query.wanted > 0 && query.wanted <= kFew) {
-        // What comes first in canonical order is the search's to find; any one is the solver's.
+        // The first traces in canonical order are found by search, any traces by the solver.
         if (query.order == TraceOrder::kCanonical) use_search(kConflicts);
       } else {
         attempts_ = {{kFar, query.limits},
@@ -115,7 +115,7 @@ void ModelTraces::use_graph(const GraphLimits& limits) {
       return;
     }
   }
-  // What no window has is the solver's to decide.
+  // Clauses that are in no window are left to the solver.
   if (graph_.layered->has_unplaced && given_ == 0 && has_trace() != SolveStatus::kSatisfiable) {
     return;
   }
@@ -173,7 +173,7 @@ void ModelTraces::attempt_graph() {
   if (paths_ == nullptr && search_ == nullptr && !tree_session_ && attempts_.empty()) use_tree();
 }
 
-/// The search met too many conflicts: by now the graph or a solver is better.
+/// Leaves the search after too many conflicts: the graph or a solver is better from here on.
 void ModelTraces::leave_search() {
   search_ = nullptr;
   if (!is_tried_) {
@@ -231,7 +231,7 @@ bool ModelTraces::print_next(const TraceFormat& format, std::string& out) {
 void ModelTraces::seek(const mpz_class& before) {
   if (query_.strategy == Strategy::kAuto && paths_ == nullptr && before >= kFar) {
     attempts_.clear();
-    // What clauses tie together from afar a graph has to carry along.
+    // Atoms that clauses tie together from afar have to be carried along in a graph.
     const bool falls_apart = looks_far(model_) && use_components(ComponentEffort::kTrial);
     if (!falls_apart && can_grow()) use_graph(query_.limits);
     if (!falls_apart && paths_ == nullptr && !use_components(ComponentEffort::kFull)) use_tree();

@@ -21,7 +21,7 @@
 namespace parallax::runtime {
 
 enum class Strategy : std::uint8_t {
-  kAuto,        // what suits the model and the number of traces
+  kAuto,        // the one that suits the model and the number of traces
   kSearch,      // propagation and backtracking, no solver
   kBlocking,    // one clause for each trace
   kGuarded,     // clauses that are retired with the first half of the horizon
@@ -43,10 +43,10 @@ inline constexpr std::array<std::pair<Strategy, std::string_view>, 7> kStrategyN
 struct TraceQuery {
   Distinct distinct = Distinct::kObservable;
   Strategy strategy = Strategy::kAuto;
-  TraceOrder order = TraceOrder::kCanonical;  // of what a solver finds one by one
-  std::int64_t wanted = 0;                    // so many traces will be asked for; 0: all
-  /// The first trace may be looked for among representatives of orbits, where a search does not
-  /// find it and no strategy is forced: that there is none is then said `by_symmetry`.
+  TraceOrder order = TraceOrder::kCanonical;  // order of traces that a solver finds one by one
+  std::int64_t wanted = 0;                    // number of traces that will be asked for; 0: all
+  /// The first trace may be sought among representatives of orbits, where a search does not find it
+  /// and no strategy is forced: the absence of traces is then reported with `by_symmetry`.
   bool breaks_symmetry = true;
   /// Only the number is wanted: ModelTraces::next() also returns nothing after each attempt at a
   /// graph, so that the caller can use the graph, or count in another way before the next one.
@@ -60,10 +60,10 @@ struct TraceQuery {
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// What lies so far ahead is not worth to be found one by one.
+/// From this many traces ahead on, a trace is not sought by listing those before it.
 inline constexpr std::int64_t kFar = 64;
-/// Transitions are found by search some hundred times faster than traces by a solver that is to
-/// give them in order. So a graph that stays small is tried first, and larger ones as traces come.
+/// Search finds transitions some hundred times faster than a solver finds traces in order. So a
+/// graph that stays small is tried first, and larger ones as traces come.
 inline constexpr GraphLimits kSmallGraph = {500'000, 50'000, 10'000};
 inline constexpr GraphLimits kMediumGraph = {2'000'000, 500'000, 200'000};
 
@@ -91,9 +91,9 @@ class ModelTraces final : public TraceSource {
   const TraceGraph* graph() const { return graph_.graph.get(); }
   /// Graphs that are still to be tried, larger ones later.
   std::size_t graphs_left() const { return attempts_.size(); }
-  /// The next trace becomes the one that `before` others precede, which is not before the one that
-  /// is next. At once where there is a graph or the number of traces is known by components, else
-  /// by finding what comes before.
+  /// Makes the trace that `before` others precede the next one; it must not lie before the present
+  /// next one. At once where there is a graph or the number of traces is known by components, else
+  /// by finding the traces before it.
   void seek(const mpz_class& before);
 
  private:
@@ -117,7 +117,7 @@ class ModelTraces final : public TraceSource {
   bool use_components(ComponentEffort effort);
   void attempt_graph();
   void leave_search();
-  /// A search that stops short makes room for what is better. False: it has not stopped short.
+  /// Replaces a search that has stopped short by a better source. False: it has not stopped short.
   bool change_source();
   bool is_due() const {
     return search_ == nullptr && !attempts_.empty() && attempts_.back().given <= given_;
@@ -128,7 +128,7 @@ class ModelTraces final : public TraceSource {
 
   const CompiledModel& model_;
   TraceQuery query_;
-  std::vector<Attempt> attempts_;  // that are still to be made; the last one first
+  std::vector<Attempt> attempts_;  // attempts still to be made; the last one first
   std::optional<SolverSession> session_, tree_session_;
   std::optional<SymmetryBreaker> breaker_;  // of `session_`, while no trace was found
   ModelGraph graph_;
@@ -138,7 +138,7 @@ class ModelTraces final : public TraceSource {
   ComponentTraces* components_ = nullptr;  // `source_`, if it is that
   std::int64_t given_ = 0;
   bool is_tried_ = false;        // there was an attempt at the graph
-  std::int64_t graph_work_ = 0;  // what the last one cost, as TraceGraph::work
+  std::int64_t graph_work_ = 0;  // cost of the last one, as TraceGraph::work
   std::string refusal_;
   std::string remark_;  // why the graph was not used
 };

@@ -21,7 +21,7 @@ constexpr std::size_t kFewAsked = 16;
 /// One of each class of conjugates, or each symmetry by itself.
 struct Asked {
   ConstantMap map;   // of all constants
-  mpz_class weight;  // so many symmetries leave as many traces
+  mpz_class weight;  // number of symmetries that leave as many traces
 };
 
 /// Cycles that come to `size` together: the cycle types of permutations, as falling lists.
@@ -158,7 +158,7 @@ std::optional<OrbitNumber> count_orbits(const CompiledModel& model, const ModelS
   for (const auto& one : *asked) order += one.weight;
   if (!all.complete) return std::nullopt;
   if (asked->size() > kFewAsked && all.count / order < asked->size()) return std::nullopt;
-  // What a graph was too small for once it is too small for again.
+  // If a graph was too small for all traces, it is too small for these counts as well.
   auto same = query;
   if (all.stats.strategy == "components") same.strategy = Strategy::kComponents;
   OrbitNumber result{0, all.count, asked->size()};

@@ -14,18 +14,19 @@ namespace parallax::runtime {
 /// How many orbits the traces of a model have, and how many traces they are.
 struct OrbitNumber {
   mpz_class orbits, traces;
-  std::size_t counted = 0;  // so many symmetries were asked how many traces they leave as they are
+  std::size_t counted = 0;  // symmetries whose unchanged traces were counted
 };
 
 /// Symmetries that may be asked; more take too long.
 inline constexpr std::size_t kMostAsked = 1'000;
 
-/// Counts the orbits of a model without constraints, at its full horizon, and lists none: their
-/// number is the mean over all symmetries of how many traces each leaves as they are (Cauchy and
-/// Frobenius; Burnside 1911), which is the same for symmetries that are conjugate. The traces that
-/// one leaves are those of the model with clauses that say so. `model` has `symmetry`, which is not
-/// empty. None: more than kMostAsked symmetries would have to be asked, or so many that to list the
-/// orbits takes less, or some traces could not be counted, or it was stopped.
+/// Counts the orbits of a model without constraints, at its full horizon, without listing them:
+/// their number is the mean over all symmetries of the number of traces that each leaves as they
+/// are (Cauchy and Frobenius; Burnside 1911), which is the same for symmetries that are conjugate.
+/// The traces that a symmetry leaves as they are, are those of the model with clauses that require
+/// this. `model` has `symmetry`, which is not empty. None: more than kMostAsked symmetries would
+/// have to be asked, or so many that to list the orbits takes less, or some traces could not be
+/// counted, or it was stopped.
 std::optional<OrbitNumber> count_orbits(const CompiledModel& model, const ModelSymmetry& symmetry,
                                         const TraceQuery& query);
 

@@ -20,7 +20,7 @@ class OrbitTraces {
  public:
   /// `model` outlives the traces.
   OrbitTraces(const CompiledModel& model, const TraceQuery& query);
-  /// None: there is none, or the search was stopped.
+  /// The next trace; none if there is none, or the search was stopped.
   std::optional<Trace> next();
   /// How many traces the last one stands for.
   const mpz_class& size() const { return size_; }

@@ -59,8 +59,8 @@ class StatePlaces {
   std::vector<std::uint32_t> carried_;            // by fixed variable - 1
 };
 
-/// Is everything that a state hides an atom with a name? Auxiliaries move as what they stand for
-/// does, and copies of atoms of other timepoints are no atoms.
+/// Do only atoms with names remain hidden in a state? Auxiliaries move with their formulas, and
+/// copies of atoms of other timepoints are no atoms.
 bool is_named(const CompiledModel& model, const LayeredModel& layered) {
   const auto is_of_model = [&](std::int32_t v) { return v <= model.base(); };
   if (!std::all_of(layered.carried.begin(), layered.carried.end(), is_of_model)) return false;
@@ -83,7 +83,7 @@ std::optional<StateOrbits::Generator> StateOrbits::generator(const CompiledModel
     if (from < values.size() && values[from] != values[to]) return std::nullopt;
     const auto observed = std::pair(places.observed(to), places.observed(from));
     const auto hidden = std::pair(places.hidden(to), places.hidden(from));
-    // What one of the two states does not have would be lost.
+    // A bit that only one of the two states has would be lost.
     if ((observed.first == kNowhere) != (observed.second == kNowhere)) return std::nullopt;
     if ((hidden.first == kNowhere) != (hidden.second == kNowhere)) return std::nullopt;
     if (observed.first != kNowhere) out.observed.push_back(observed);

@@ -12,16 +12,16 @@
 
 namespace parallax::runtime {
 
-/// States of a layered model up to exchanging constants that the model does not tell apart. From a
-/// state and from what a symmetry makes of it the same number of traces go on, so that a graph
-/// which is to count them needs one of the two.
+/// States of a layered model up to exchanging constants that the model does not tell apart. The
+/// same number of traces go on from a state and from its image under a symmetry, so that a graph
+/// that counts them needs only one of the two.
 class StateOrbits {
  public:
-  /// `layered` is the model's own. Symmetries of which it is not seen what they make of its states
-  /// are left out. Linear in the slots and in what the generators move.
+  /// `layered` is the model's own. Symmetries are left out if their effect on its states cannot be
+  /// told. Linear in the slots and in what the generators move.
   StateOrbits(const CompiledModel& model, const LayeredModel& layered,
               std::span<const NodeMap> symmetries);
-  /// Every state is its own orbit.
+  /// True if every state is its own orbit.
   bool empty() const { return generators_.empty(); }
 
   /// A state of the same orbit from which no generator leads to an earlier one (false before true,
@@ -30,7 +30,8 @@ class StateOrbits {
   void represent(GraphNode& node) const;
 
  private:
-  /// Of a vector of bits: each place that changes, and where its new value comes from. By place.
+  /// Moves of a vector of bits: each place that changes, and the place that its new value comes
+  /// from. Sorted by place.
   using Moves = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   struct Generator {
     Moves observed, hidden;
@@ -42,10 +43,10 @@ class StateOrbits {
   std::vector<Generator> generators_;
 };
 
-/// What stands for what in a graph that counts.
+/// Orbits by which a counting graph merges states.
 struct GraphOrbits {
   StateOrbits at_start;  // symmetries of the whole model
-  StateOrbits later;     // and of what it says of everything after the state at timepoint 0
+  StateOrbits later;     // symmetries of the model after timepoint 0 (model_after_start)
 
   /// Searches for symmetries, some tenths of a second each.
   static GraphOrbits of(const CompiledModel& model, const LayeredModel& layered);

@@ -69,7 +69,7 @@ bool count_components(const CompiledModel& model, const TraceQuery& query, Compo
 
 TraceCount count_traces(const CompiledModel& model, const TraceQuery& query) {
   TraceCount result;
-  // What clauses tie together from afar a graph has to carry along.
+  // Atoms that clauses tie together from afar have to be carried along in a graph.
   if (query.strategy == Strategy::kAuto && looks_far(model) &&
       count_components(model, query, ComponentEffort::kTrial, result)) {
     return result;

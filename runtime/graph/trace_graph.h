@@ -23,7 +23,7 @@ namespace parallax::runtime {
 /// Truth values, false before true: the order of vectors is the canonical order.
 using Bits = std::vector<bool>;
 
-/// What one window admits: the events, and the state after it.
+/// One way through a window: the events, and the state after it.
 struct Move {
   Bits events;    // by LayeredModel::events
   Bits observed;  // by LayeredModel::observed
@@ -79,8 +79,8 @@ class StepSolver {
   bool wants_solver_ = false;
 };
 
-/// A state of the graph: what is observed, and every valuation of the hidden slots that some trace
-/// with the same observations so far can have (subset construction, Rabin and Scott 1959).
+/// A state of the graph: the observed values, and every valuation of the hidden slots that some
+/// trace with the same observations so far can have (subset construction, Rabin and Scott 1959).
 struct GraphNode {
   Bits observed;
   std::vector<Bits> hidden;  // ascending
@@ -97,7 +97,7 @@ struct GraphEdge {
 
 struct GraphLimits {
   std::size_t nodes = 2'000'000;  // of all layers together
-  /// Ways on from a state, each counted once for every valuation of what is hidden.
+  /// Ways on from a state, each counted once for every valuation of the hidden slots.
   std::size_t edges = 20'000'000;
   std::int64_t conflicts = std::numeric_limits<std::int64_t>::max();  // of the search for them
   bool solver = true;  // states that a search does not settle are given to one
@@ -120,8 +120,8 @@ class TraceGraph {
  public:
   /// None if the solver was stopped or a limit was hit; `reason` says which. `model` outlives the
   /// graph, `stop` may be null. With `orbits` a state stands for all of its orbit: the graph counts
-  /// as without, but its paths are no longer the traces. `work`, if given, receives what it cost
-  /// (StepSolver::work), also where there is none.
+  /// as without, but its paths are no longer the traces. `work`, if given, receives the cost
+  /// (StepSolver::work), also where there is no graph.
   static std::unique_ptr<TraceGraph> build(const LayeredModel& model, const GraphLimits& limits,
                                            const std::atomic<bool>* stop, std::string& reason,
                                            const GraphOrbits* orbits = nullptr,

@@ -95,7 +95,7 @@ Belief::Belief(const StepWindows& windows, const BeliefOptions& options)
   labels_.resize(kToldFrom);
 }
 
-/// Of those that happen at all.
+/// Literals of those events that can happen at all.
 std::vector<Literal> Belief::event_literals(const std::vector<EventId>& events) const {
   const auto slots = static_cast<std::int32_t>(windows_.layered.state_slots);
   std::vector<Literal> out;
@@ -157,7 +157,7 @@ std::optional<std::vector<Belief::StateId>> Belief::initial_states(const Filter&
   return out;
 }
 
-/// From what is known of the start to the states that it leaves. Refused: there are none.
+/// Finds the initial states that agree with the known facts. Refused: there are none.
 Admission Belief::settle() {
   if (is_settled_) return Admission::kAdmitted;
   auto states = initial_states(known_);
@@ -185,7 +185,7 @@ std::string Belief::cut_text() const {
       where);
 }
 
-/// Takes what is possible, of which there is some.
+/// Takes the possible states, of which there must be some.
 Admission Belief::admit(std::vector<StateId> states) {
   take(std::move(states));
   if (std::any_of(possible_.begin(), possible_.end(),
@@ -209,7 +209,7 @@ Admission Belief::observe(const Observation& observed) {
   forget();
   const auto filter = filter_of(observed);
   if (!is_settled_ && !options_.unobserved.empty()) {
-    // Something may have happened before: what is seen is not the start.
+    // Something may have happened before: the observation is not of the start.
     const auto settled = settle();
     if (settled != Admission::kAdmitted) return settled;
   }

@@ -17,24 +17,24 @@
 namespace parallax::runtime {
 
 struct BeliefOptions {
-  std::size_t max_states = 20'000;  // that are possible at once
-  /// Ways from state to state are remembered until so many states are, or ten times as many ways;
-  /// then from anew.
+  std::size_t max_states = 20'000;  // states that are possible at once
+  /// Number of states up to which ways from state to state are remembered, or ten times as many
+  /// ways; then the memory starts anew.
   std::size_t remembered = 200'000;
-  std::vector<compiler::EventId> unobserved;  // may happen without being told of
-  /// Happen without being told of where the axioms demand them, and only there: in a state, and
-  /// beside what else happens, a least set of them. None of them is unobserved.
+  std::vector<compiler::EventId> unobserved;  // may happen without being reported
+  /// Happen without being reported where the axioms demand them, and only there: in a state, and
+  /// beside the other events, a subset-minimal set of them. None of them is unobserved.
   std::vector<compiler::EventId> demanded;
   /// Happen where the plan performs them, and nowhere else.
   std::vector<compiler::EventId> performed;
   const std::atomic<bool>* stop = nullptr;  // outlives the belief
 };
 
-/// What is known of the fluents: by FluentId 1 holds, -1 does not, 0 is not known.
+/// Knowledge of the fluents, by FluentId: 1 holds, -1 does not, 0 is unknown.
 using Observation = std::vector<std::int8_t>;
 
-/// What is told of one step: exactly these events happen, and of the unobserved ones any. Did the
-/// perform of the plan succeed? Where the plan has none, or there is no plan, that says nothing.
+/// Report on one step: exactly these events happen, beside any of the unobserved ones. `succeeded`
+/// tells whether the perform of the plan did; without a perform or a plan it says nothing.
 struct ToldStep {
   std::vector<compiler::EventId> events;  // sorted
   std::optional<bool> succeeded = std::nullopt;
@@ -43,33 +43,33 @@ struct ToldStep {
 enum class Admission : std::uint8_t {
   kAdmitted,
   kRefused,    // by every state that was possible: those stay as they were
-  kUndecided,  // and from now on always; undecided_because() says why
+  kUndecided,  // from now on always; undecided_because() says why
 };
 
-/// A fluent that is another one in what was observed than in what is possible.
+/// A fluent whose observed value differs from the possible ones.
 struct Disagreement {
   compiler::FluentId fluent;
   bool observed = false;
 };
 
-/// The states of a model, with the place of its plan's control, that what was told so far leaves
-/// possible: exactly those in which some trace of any length is that has these events, with
+/// The possible states of a model, with the place of its plan's control, according to the reports
+/// so far: exactly those in which some trace of any length is that has these events, with
 /// unobserved ones anywhere between and beside them, and agrees with all observations. A step is
 /// one timepoint; without a step time stands still, but for unobserved events, which the plan's
 /// control may be waiting for.
 ///
-/// Where the plan's unrolling was cut anything that the axioms admit may follow; once nothing else
+/// Where the plan's unrolling was cut, anything that the axioms admit may follow; once nothing else
 /// is possible, nothing is said any more.
 ///
 /// States are kept one by one, at most `max_states`: beyond that nothing is said any more. Memory
-/// is bounded by the options, however long it goes on. What a step does to a state is asked of the
+/// is bounded by the options, however long it goes on. The successors of a state are asked of the
 /// clauses once and remembered.
 class Belief {
  public:
   /// `windows` outlives the belief.
   Belief(const StepWindows& windows, const BeliefOptions& options);
 
-  /// Another log of the same model; what is known of its steps stays.
+  /// Starts another log of the same model; known steps are kept.
   void restart();
   Admission observe(const Observation& observed);
   Admission step(const ToldStep& told);
@@ -82,8 +82,8 @@ class Belief {
   std::size_t remembered_ways() const { return way_count_; }
   const std::string& undecided_because() const { return undecided_; }
 
-  /// Why an observation was refused: the fluents that are as observed in no possible state; if
-  /// there are none, those in which the possible state that is nearest differs.
+  /// Why an observation was refused: the fluents whose observed value no possible state has; if
+  /// there are none, those in which the nearest possible state differs.
   std::vector<Disagreement> disagreement(const Observation& observed);
   /// Where the plan's control may be: indices into CompiledModel::plan, ascending.
   std::vector<std::size_t> plan_steps() const;
@@ -96,14 +96,14 @@ class Belief {
   struct WordsHash {
     std::size_t operator()(const Words& words) const;
   };
-  /// What an observation says of the words of a state.
+  /// Condition of an observation on the words of a state.
   struct Filter {
     Words mask, value;
-    bool possible = true;  // false: of a fluent that never holds it says that it does
+    bool possible = true;  // false: it says that a fluent holds that never does
     friend bool operator==(const Filter&, const Filter&) = default;
     bool admits(const Words& state) const;
   };
-  // The labels of steps that nobody tells of: of model and plan, and of the model alone.
+  // Labels of unreported steps: of model and plan, and of the model alone.
   static constexpr std::uint32_t kUntold = 0, kAlone = 1, kToldFrom = 2;
   /// The plan's phase behind a cut.
   static constexpr std::uint32_t kUnknownPlan = 0xFFFFFFFF;

@@ -1,4 +1,4 @@
-// What a belief says of itself, for messages.
+// Descriptions of a belief, for messages.
 
 #include <algorithm>
 

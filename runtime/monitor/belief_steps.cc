@@ -1,4 +1,4 @@
-// What a step makes of a state: asked of the clauses once, and remembered.
+// Successor states of a belief's states: asked of the clauses once, and remembered.
 
 #include <fmt/format.h>
 
@@ -33,7 +33,7 @@ std::uint32_t Belief::label_of(const ToldStep& told) {
   return entry->second;
 }
 
-/// Only what is possible now stays known.
+/// Forgets everything but the possible states, once too much is remembered.
 void Belief::forget() {
   if (states_.size() <= options_.remembered && labels_.size() <= options_.remembered &&
       way_count_ <= kWaysPerState * options_.remembered) {
@@ -47,7 +47,7 @@ void Belief::forget() {
   label_ids_.clear();
   ways_.clear();
   way_count_ = 0;
-  steps_.clear();  // what their solvers have learned goes as well
+  steps_.clear();  // with everything that their solvers have learned
   last_closed_ = {};
   possible_.clear();
   for (auto& words : kept) possible_.push_back(intern(std::move(words)));
@@ -65,7 +65,7 @@ void Belief::assume_state(const Words& state, std::vector<Literal>& assumptions)
   }
 }
 
-/// The plan's control after a step that is none of the plan: as it was, or nowhere.
+/// Assumes the plan's control after a step that the plan does not take: as it was, or nowhere.
 void Belief::assume_plan_after(const Words* as_before, std::vector<Literal>& assumptions) const {
   for (const auto place : control_bits_) {
     const bool stays = as_before != nullptr && bit(*as_before, place);
@@ -73,7 +73,7 @@ void Belief::assume_plan_after(const Words* as_before, std::vector<Literal>& ass
   }
 }
 
-/// False: one of the events never happens.
+/// Adds the events of a step to the question. False: one of them never happens.
 bool Belief::assume_events(const ToldStep& told, std::uint32_t label,
                            StepQuestion& question) const {
   const auto& events = windows_.model.events;
@@ -111,7 +111,8 @@ bool Belief::is_at_cut(const Words& state) const {
                      [&](const auto& place) { return place && bit(state, *place); });
 }
 
-/// What axioms and plan make of a step in these phases; without one of the plan the axioms alone.
+/// Query for the steps that axioms and plan admit in these phases; without a phase of the plan, for
+/// the axioms alone.
 StepQuery& Belief::query(std::uint32_t axioms, std::optional<std::uint32_t> plan) {
   const auto axiom_window = windows_.axioms.window_of[axioms];
   const auto plan_window =
@@ -125,7 +126,8 @@ StepQuery& Belief::query(std::uint32_t axioms, std::optional<std::uint32_t> plan
   return *out;
 }
 
-/// None: there are too many, it was stopped, or nothing is known of what follows.
+/// The states after a step. None: there are too many, it was stopped, or nothing is known of what
+/// follows.
 std::optional<std::vector<Belief::StateId>> Belief::ask_step(StateId state, std::uint32_t label) {
   const auto before = states_[state];
   const auto axioms = axiom_phase(before), plan = plan_phase(before);
@@ -195,7 +197,7 @@ std::optional<std::vector<Belief::StateId>> Belief::closed(std::vector<StateId> 
   while (!todo.empty()) {
     const auto state = todo.back();
     todo.pop_back();
-    // The plan takes part in a step if it performs what is not observed, or is over.
+    // The plan takes part in a step if it performs an unobserved event, or is over.
     const bool waits =
         is_known(state) && (is_at_perform(states_[state]) || is_at_cut(states_[state]));
     for (const auto label : {kUntold, kAlone}) {

@@ -77,7 +77,7 @@ class SlotWriter {
       place = static_cast<std::uint32_t>(keys_.size());
       keys_.push_back(&key);
     }
-    // By variable - 1: where it is among the fixed ones, or which slot of which timepoint it is.
+    // By variable - 1: its place among the fixed ones, or its slot and timepoint.
     for (const auto& atom : model_.fixed) {
       if (is_of_state(atom)) {
         fixed_.emplace_back(0);
@@ -134,7 +134,7 @@ class SlotWriter {
     }
   }
 
-  /// What an auxiliary stands for at a timepoint, whatever its number is: equal steps are to have
+  /// Hash of an auxiliary's meaning at a timepoint, whatever its number: equal steps are to have
   /// equal clauses.
   std::uint64_t shape(std::size_t auxiliary, Timepoint binds) {
     std::vector<std::size_t> todo = {auxiliary};
@@ -148,7 +148,7 @@ class SlotWriter {
             if (!shapes_.contains({index(literal), binds})) todo.push_back(index(literal));
           }
         }
-        if (todo.size() != before) continue;  // those that it is made of come first
+        if (todo.size() != before) continue;  // its parts come first
         shapes_.emplace(Part(next, binds), shape_of_known(next, binds));
       }
       todo.pop_back();
@@ -258,7 +258,7 @@ class SlotWriter {
       const auto clause = model_.clauses[c];
       std::vector<std::pair<std::uint64_t, Literal>> ordered;
       for (const auto literal : clause) ordered.emplace_back(order_of(literal, binds), literal);
-      // What is defined stays in front.
+      // The auxiliary that is defined stays in front.
       const bool is_definition = model_.clause_is_definition[c];
       std::stable_sort(ordered.begin() + (is_definition ? 1 : 0), ordered.end(),
                        [](const auto& one, const auto& other) { return one.first < other.first; });

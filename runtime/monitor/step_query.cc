@@ -43,7 +43,8 @@ WindowQuery::Answer StepQuery::ask(const StepQuestion& question, std::size_t lim
     answer.complete = add_least(question.given, question, limit, answer);
     return answer;
   }
-  // What is demanded depends on the other events, so each choice of them stands for itself.
+  // Demanded events depend on the other events, so each choice of the others is considered
+  // separately.
   if (unobserved_ == nullptr) unobserved_ = query(literals_.unobserved);
   const auto choices = unobserved_->ask(question.given, limit);
   answer.complete = choices.complete;
@@ -58,8 +59,8 @@ WindowQuery::Answer StepQuery::ask(const StepQuestion& question, std::size_t lim
   return answer;
 }
 
-/// Events of which some possible step consists, all of them `allowed`. None: there is none, or it
-/// is not known.
+/// Demanded events of some possible step, all of them `allowed`. None: there is none, or it is not
+/// known.
 std::optional<DemandedEvents> StepQuery::some(const std::vector<Literal>& given,
                                               const DemandedEvents& demanded,
                                               const DemandedEvents& allowed, bool& is_complete) {
@@ -80,7 +81,7 @@ std::optional<DemandedEvents> StepQuery::some(const std::vector<Literal>& given,
   return out;
 }
 
-/// One of the least sets without the `denied` events.
+/// One of the subset-minimal sets without the `denied` events.
 std::optional<DemandedEvents> StepQuery::least_within(const std::vector<Literal>& given,
                                                       const DemandedEvents& demanded,
                                                       const DemandedEvents& denied,
@@ -98,7 +99,7 @@ std::optional<DemandedEvents> StepQuery::least_within(const std::vector<Literal>
   return least;
 }
 
-/// The states for all least sets. False: there are too many, or it was stopped.
+/// Adds the states for all subset-minimal sets. False: there are too many, or it was stopped.
 bool StepQuery::add_least(const std::vector<Literal>& given, const StepQuestion& question,
                           std::size_t limit, WindowQuery::Answer& answer) {
   const auto& demanded = question.demanded;

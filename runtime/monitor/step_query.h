@@ -13,20 +13,20 @@ namespace parallax::runtime {
 /// Events, as indices into StepLiterals::demanded, ascending.
 using DemandedEvents = std::vector<std::uint32_t>;
 
-/// What is asked of a step. Literals are those of a window.
+/// Question about a step. Literals are those of a window.
 struct StepQuestion {
   std::vector<Literal> given;  // the state before, and events
   DemandedEvents demanded;     // events that happen where they must, and only then
-  std::vector<Literal> after;  // what is known of the state behind: no reason for any event
+  std::vector<Literal> after;  // known about the state after it: no reason for any event
 };
 
-/// Which literals of a window are what.
+/// Literals of a window by their role.
 struct StepLiterals {
   std::vector<Literal> after;       // the state that a step leads to
-  std::vector<Literal> unobserved;  // events that may happen without being told of
-  std::vector<Literal> alone;       // of those: while the plan's control stands still
+  std::vector<Literal> unobserved;  // events that may happen without being reported
+  std::vector<Literal> alone;       // those that may happen while the plan's control stands still
   std::vector<Literal> demanded;    // events that may happen where axioms demand them
-  std::vector<Literal> succeeded;   // that the plan's perform did
+  std::vector<Literal> succeeded;   // the plan's perform succeeded
 };
 
 /// The states that one step leads to.
@@ -35,14 +35,14 @@ class StepQuery {
   /// `stop` may be null.
   StepQuery(WindowClauses window, const StepLiterals& literals, const std::atomic<bool>* stop);
 
-  // Assumptions: one of these is true.
+  // Assumptions: one literal of the list is true.
   Literal some_unobserved() const { return Literal::positive(window_.variables + 1); }
   Literal some_alone() const { return Literal::positive(window_.variables + 2); }
   Literal some_succeeded() const { return Literal::positive(window_.variables + 3); }
 
-  /// At most `limit` states, each by its literals of `after`; one may be there twice. Of the
-  /// demanded events a least set happens: none of which a part alone would do, in the same state
-  /// and with the same other events, whatever state that leads to.
+  /// At most `limit` states, each by its literals of `after`; a state may occur twice. Only
+  /// subset-minimal sets of demanded events happen: no proper subset would do in the same state and
+  /// with the same other events, whatever state that leads to.
   WindowQuery::Answer ask(const StepQuestion& question, std::size_t limit);
 
  private:
@@ -57,7 +57,7 @@ class StepQuery {
                                              const DemandedEvents& denied, bool& is_complete);
 
   WindowClauses window_;
-  const StepLiterals& literals_;  // of the belief, as long as it
+  const StepLiterals& literals_;  // the belief's, which outlives the object
   const std::atomic<bool>* stop_;
   std::unique_ptr<WindowQuery> after_, unobserved_, demanded_;
 };

@@ -13,7 +13,7 @@ namespace {
 using compiler::AtomKind;
 using compiler::CompiledModel;
 
-/// What unit propagation finds without looking ahead: a trace that ends early is one all the same.
+/// Values that unit propagation finds without looking ahead, since a trace may end early.
 std::vector<std::int8_t> values_at_start(const CompiledModel& model) {
   CompiledModel first = model;
   first.clauses = {};
@@ -23,8 +23,8 @@ std::vector<std::int8_t> values_at_start(const CompiledModel& model) {
   return unit_values(first);
 }
 
-/// The least period with which the windows before the horizon repeat themselves: one whole round is
-/// there twice.
+/// The least period with which the windows before the horizon repeat; one whole period occurs
+/// twice.
 std::optional<std::size_t> period_of(const std::vector<std::uint32_t>& steps) {
   for (std::size_t period = 1; 2 * period <= steps.size(); ++period) {
     bool repeats = true;
@@ -36,7 +36,7 @@ std::optional<std::size_t> period_of(const std::vector<std::uint32_t>& steps) {
   return std::nullopt;
 }
 
-/// The phases: what comes before the windows repeat themselves, and one round of those.
+/// Finds the phases: the windows before the repetition, and one round of those that repeat.
 void find_phases(StepPart& out) {
   const auto period = period_of(out.window_of);
   if (!period) return;
@@ -113,7 +113,7 @@ class Parting {
            std::any_of(clause.begin(), clause.end(),
                        [&](Literal literal) { return is_plan_slot(literal); });
   }
-  /// Definitions, true in themselves, and what a slot that is never true stands for.
+  /// Is the clause a definition, true in itself, or the clause about a slot that is never true?
   bool is_common(std::size_t c) const {
     const auto clause = model_.clauses[c];
     if (std::any_of(clause.begin(), clause.end(),

@@ -12,16 +12,16 @@
 
 namespace parallax::runtime {
 
-/// What the axioms, or the plan, say of a step. A step begins in a phase: a timepoint at first, and
-/// where what they say repeats itself from some timepoint on, the phases do, so that there is a
-/// next step however many there were.
+/// Clauses of the axioms, or of the plan, for one step. A step begins in a phase: a timepoint at
+/// first; where the clauses repeat from some timepoint on, the phases do too, so that there is a
+/// next step after any number of steps.
 struct StepPart {
-  std::vector<WindowClauses> windows;    // those that differ
+  std::vector<WindowClauses> windows;    // each one once
   std::vector<std::uint32_t> window_of;  // by phase
   std::optional<std::uint32_t>
       comes_after;  // the phase behind the last one; none: nothing is known
 
-  /// Behind the last phase, if nothing comes after it: one that does not exist.
+  /// The next phase. Behind the last one, if nothing comes after it: one that does not exist.
   std::uint32_t next(std::uint32_t phase) const {
     return phase + 1 < window_of.size()
                ? phase + 1
@@ -30,28 +30,28 @@ struct StepPart {
   bool knows(std::uint32_t phase) const { return phase < window_of.size(); }
 };
 
-/// A model, with its plan if it has one, as what one step can do. Axioms and plan are kept apart: a
-/// step may be one of the model alone, while the plan's control stands still. A step that both take
-/// has the clauses of both.
+/// A model, with its plan if it has one, as the clauses of its single steps. Axioms and plan are
+/// kept apart: a step may be one of the model alone, while the plan's control stands still. A step
+/// that both take has the clauses of both.
 struct StepWindows {
   compiler::CompiledModel model;  // with_plan_slots
   LayeredModel layered;           // of both together
-  StepPart axioms, plan;          // without a plan that says nothing
+  StepPart axioms, plan;          // without a plan, `plan` allows everything
   bool ends = false;              // no trace is longer than the phases of the axioms
   /// State slots of the plan's control, [first, last): none without a plan.
   std::uint32_t first_plan_slot = 0, last_plan_slot = 0;
-  std::vector<std::uint32_t> outcomes;   // of those: that a perform succeeded
-  std::vector<std::uint32_t> locations;  // of those, by PlanStepId where known
-  std::vector<std::uint32_t> cuts;       // of those, by PlanCutId where known
+  std::vector<std::uint32_t> outcomes;   // of the plan's slots: a perform succeeded
+  std::vector<std::uint32_t> locations;  // of the plan's slots, by PlanStepId where known
+  std::vector<std::uint32_t> cuts;       // of the plan's slots, by PlanCutId where known
 
   bool goes_on() const { return axioms.comes_after && plan.comes_after; }
   /// The clauses of a step that the axioms take from one phase and the plan from another.
   WindowClauses joined(std::uint32_t axiom_phase, std::uint32_t plan_phase) const;
 };
 
-/// What there is behind the horizon of a model.
+/// Steps beyond the horizon of a model.
 enum class Beyond : std::uint8_t {
-  kTheSame,  // what repeats itself before it goes on; where nothing does, nothing is known
+  kTheSame,  // windows that repeat before it go on; where none do, nothing is known
   kNothing,  // traces end there at the latest
 };
 

@@ -100,10 +100,10 @@ class Totals {
   std::vector<Timepoint> times_;  // of the new variables
 };
 
-/// What an objective has come to by each timepoint, less what it cannot be less than.
+/// Sum of an objective up to each timepoint, above its lower bound there.
 class RunningTotal {
  public:
-  /// Of sums above `most` only that they are above is told.
+  /// Sums above `most` are not told apart.
   RunningTotal(const CompiledModel& model, const compiler::Objective& objective, std::int64_t most,
                Totals& totals) {
     std::vector<std::vector<const compiler::ObjectiveTerm*>> by_time(
@@ -131,8 +131,8 @@ class RunningTotal {
     }
   }
 
-  /// No more than `value` at t: literals of which at least one has to hold. None: that is always
-  /// so; empty: never.
+  /// The condition that the value at t is at most `value`: literals of which at least one has to
+  /// hold. None: that is always so; empty: never.
   std::optional<std::vector<Literal>> at_most(std::int64_t value, Timepoint t) const {
     const auto place = static_cast<std::size_t>(t);
     const auto rest = value - least_[place];
@@ -158,7 +158,7 @@ class RunningTotal {
   std::vector<std::int64_t> least_;  // by timepoint
 };
 
-/// The largest value that any bound leaves to what can vary; -1: none leaves anything.
+/// The largest value that any bound leaves to the variable terms; -1: none leaves anything.
 std::int64_t largest_rest(const CompiledModel& model, const compiler::Objective& objective,
                           std::int64_t value) {
   std::int64_t least = 0, most_negative = 0;

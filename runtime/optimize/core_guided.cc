@@ -6,8 +6,8 @@
 namespace parallax::runtime {
 namespace {
 
-/// Shortening a core is worth so many conflicts a literal; counted, so that answers do not depend
-/// on the machine.
+/// Conflicts that shortening a core is worth, for each literal; counted, so that answers do not
+/// depend on the machine.
 constexpr std::int64_t kConflictsToShorten = 500;
 constexpr std::size_t kLongestToShorten = 200;
 constexpr std::size_t kFirstCounted = 4;
@@ -59,7 +59,8 @@ void CoreGuidedSearch::prepare(const compiler::Objective& objective) {
   }
 }
 
-/// Of a literal and its negation one is broken in any case.
+/// Adds a soft literal. One of a literal and its negation is broken in any case, which raises the
+/// lower bound.
 void CoreGuidedSearch::add_soft(Literal good, std::int64_t weight) {
   const auto opposite = softs_.find((~good).dimacs());
   if (opposite != softs_.end()) {
@@ -103,7 +104,7 @@ std::vector<Literal> CoreGuidedSearch::failed_of(const std::vector<Literal>& sof
   return out;
 }
 
-/// Leaves out what is not needed, as far as that is seen soon.
+/// Removes literals from a core that are not needed, as far as that shows quickly.
 void CoreGuidedSearch::shorten(std::vector<Literal>& core) {
   if (core.size() > kLongestToShorten) return;
   for (std::size_t i = 0; i < core.size() && core.size() > 1;) {
@@ -152,7 +153,7 @@ void CoreGuidedSearch::count(const Core& core) {
   allow(counters_.size() - 1, 1, core.weight);
 }
 
-/// More of a core than that cost the weight.
+/// Charges the weight for more than `broken` broken literals of a core.
 void CoreGuidedSearch::allow(std::size_t number, std::size_t broken, std::int64_t weight) {
   auto& counter = counters_[number];
   if (broken >= counter.broken.size()) return;
@@ -176,7 +177,8 @@ void CoreGuidedSearch::harden(Literal literal) {
   }
 }
 
-/// What would cost more than there is between the bounds is kept by everything that counts.
+/// Hardens soft literals that cost more than the gap between the bounds: every trace that counts
+/// keeps them.
 void CoreGuidedSearch::harden_heavy() {
   if (!upper_) return;
   for (auto soft = softs_.begin(); soft != softs_.end();) {

@@ -61,7 +61,7 @@ class OptimumSearch {
     return true;
   }
 
-  /// The session's valuation, if it is better than what was found before.
+  /// Keeps the session's valuation if it is better than the best one so far.
   void note(Timepoint n) {
     const auto value = [&](Literal literal) { return session_.value(literal); };
     std::vector<std::int64_t> values;
@@ -86,7 +86,7 @@ class OptimumSearch {
       best_.at_least = lower_;
       return;
     }
-    // Of several lengths, bounds of the first objective alone are compared.
+    // For several lengths, only the bounds of the first objective are compared.
     auto least = decided_ == 0 ? lower_ : trivial_bound(model_.objectives.front(), next - 1);
     if (!best_.values.empty()) least = std::min(least, best_.values.front());
     for (auto n = next; n <= last_length_; ++n) {
@@ -102,7 +102,7 @@ class OptimumSearch {
   Optimum best_;
   Timepoint last_length_ = 0;
   std::size_t decided_ = 0;  // objectives of the length that is looked at
-  std::int64_t lower_ = 0;   // of the next one
+  std::int64_t lower_ = 0;   // bound of the next objective
   std::int64_t cores_ = 0;
 };
 

@@ -9,17 +9,18 @@
 
 namespace parallax::runtime {
 
-/// What is known of the least values of a model's objectives, the first objective first.
+/// Results on the least values of a model's objectives, the first objective first.
 struct Optimum {
-  /// Of the best trace found; empty: none was found.
+  /// Values of the best trace found; empty: none was found.
   std::vector<std::int64_t> values;
   std::optional<Trace> witness;
-  /// So many objectives are decided: the best traces have these values. All of them: the optimum.
+  /// Number of objectives that are decided: the best traces have these values. All of them: the
+  /// optimum.
   std::size_t decided = 0;
-  /// Of the first objective that is not decided: no trace that has the values of those before has
-  /// less.
+  /// Lower bound of the first undecided objective, among traces that have the values of those
+  /// before.
   std::optional<std::int64_t> at_least;
-  /// There is no trace: the solver said so.
+  /// The solver proved that there is no trace.
   bool none = false;
   std::int64_t cores = 0, solve_calls = 0;
 

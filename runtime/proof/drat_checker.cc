@@ -11,7 +11,7 @@
 namespace parallax::runtime {
 namespace {
 
-/// What the propagator keeps for a variable, its watch lists included.
+/// Bytes that the propagator keeps for a variable, its watch lists included.
 constexpr std::size_t kBytesPerVariable = 128;
 
 using Outcome = DratChecker::Outcome;
@@ -109,7 +109,7 @@ bool DratChecker::normalize(std::span<const std::int64_t> clause) {
   return true;
 }
 
-/// Adds the clause in work and what follows from it at once.
+/// Adds the present clause and assigns the literals that it forces.
 DratChecker::Outcome DratChecker::hold() {
   const auto added = clauses_.add(clause_);
   if (!added) return Outcome::kNoRoom;
@@ -155,7 +155,7 @@ DratChecker::Outcome DratChecker::remove_clause(std::span<const std::int64_t> cl
   return Outcome::kFine;
 }
 
-/// Does what was assigned lead to a conflict? What was assigned before `root` stays for good.
+/// Do the assignments lead to a conflict? Those made before `root` are permanent.
 DratChecker::Outcome DratChecker::conflicts(std::size_t root) {
   const auto conflict = propagator_.propagate();
   if (propagator_.stopped()) return Outcome::kStopped;

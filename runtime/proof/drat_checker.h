@@ -33,9 +33,9 @@ struct ProofStatistics {
 /// propagation (RUP), or if that is so for its resolvents on its first literal with every clause
 /// that has the complement (RAT). Deleting a clause that supports an assigned literal is ignored,
 /// as is usual: more clauses refute no less, and the clauses that a step is checked against are
-/// always those that are held. Literals are in DIMACS convention. Cost of a RUP step: what is
-/// propagated; a RAT step looks at every clause once more, unless
-/// the complement of its first literal never occurred.
+/// always those that are held. Literals are in DIMACS convention. Cost of a RUP step: its
+/// propagation; a RAT step looks at every clause once more, unless the complement of its first
+/// literal never occurred.
 class DratChecker {
  public:
   /// `variables`: of the formula.
@@ -93,9 +93,9 @@ struct ProofReport {
   ProofStatistics statistics;
 };
 
-/// Does the DRAT proof show that the DIMACS formula has no model? Both are read to their end: what
-/// follows a contradiction still has to be well-formed. Time is what the steps cost; memory is the
-/// clauses held at one time.
+/// Does the DRAT proof show that the DIMACS formula has no model? Both are read to their end: the
+/// steps after a contradiction still have to be well-formed. Time is the cost of the steps; memory
+/// is the clauses held at one time.
 ProofReport check_proof(std::istream& formula, std::istream& proof, DratFormat format,
                         const ProofLimits& limits = {});
 

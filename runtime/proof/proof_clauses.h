@@ -11,7 +11,7 @@
 namespace parallax::runtime::proof_literal {
 
 /// A literal as binary DRAT writes it: 2v for the variable v, 2v + 1 for its negation. The checker
-/// has a type of its own, because it shares nothing with what it checks.
+/// has a type of its own, because it shares nothing with the program that it checks.
 using Code = std::uint32_t;
 
 inline constexpr std::int64_t kMaxVariable = (std::int64_t{1} << 31U) - 1;
@@ -34,16 +34,16 @@ class ProofClauses {
   using Ref = std::uint32_t;
   static constexpr Ref kNone = UINT32_MAX;
 
-  /// `max_bytes`: what the array may grow to.
+  /// `max_bytes`: size limit of the array.
   explicit ProofClauses(std::size_t max_bytes);
 
   /// None: there is no room. The literals are distinct.
   std::optional<Ref> add(std::span<const Code> literals);
-  /// A clause with these literals, the one added last; kNone if there is none.
+  /// The last added clause with these literals; kNone if there is none.
   Ref find(std::span<const Code> literals) const;
   void remove(Ref clause);
 
-  /// The literals may be reordered by whoever watches them.
+  /// The literals of a clause; the propagator that watches them may reorder them.
   std::span<Code> literals(Ref clause) {
     return std::span(words_).subspan(clause + kHeader, words_[clause]);
   }
@@ -78,11 +78,11 @@ class ProofClauses {
   std::size_t live_ = 0, removed_words_ = 0;
 };
 
-/// Unit propagation over a proof's clauses with two watched literals. Clauses that took part in
-/// an earlier conflict ("core") are visited before the others, because they are the ones that lead
-/// to the next conflict (Heule, Hunt and Wetzler 2013, "Trimming while checking clausal proofs").
+/// Unit propagation over a proof's clauses with two watched literals. Clauses that took part in an
+/// earlier conflict ("core") are visited before the others, because they are the ones that lead to
+/// the next conflict (Heule, Hunt and Wetzler 2013, "Trimming while checking clausal proofs").
 ///
-/// What is assigned while no mark is open stays for good.
+/// Assignments made while no mark is open are permanent.
 class ProofPropagator {
  public:
   using Code = proof_literal::Code;
@@ -100,7 +100,8 @@ class ProofPropagator {
   bool is_open(Code literal) const { return value_[literal] == 0; }
   void assign(Code literal, Ref reason = ProofClauses::kNone);
 
-  /// Watches a new clause and assigns what it forces. False: all its literals are false.
+  /// Watches a new clause and assigns the literal that it forces. False: all its literals are
+  /// false.
   bool attach(Ref clause);
   /// Is this clause the last support of a literal: one literal true, the others false?
   bool is_support(Ref clause) const;

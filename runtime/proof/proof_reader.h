@@ -14,7 +14,7 @@ class DimacsReader {
   /// `in` outlives the reader.
   explicit DimacsReader(std::istream& in) : in_(in) {}
 
-  /// Reads up to the `p cnf` line. False: `problem()` says what is wrong.
+  /// Reads up to the `p cnf` line. False: `problem()` describes the error.
   bool read_header();
   std::int64_t variables() const { return variables_; }
 
@@ -38,7 +38,7 @@ class DimacsReader {
   std::string problem_;
 };
 
-/// A DRAT file does not say which form it has; whoever writes it knows.
+/// Format of a DRAT file. The file does not state it; its writer knows.
 enum class DratFormat : std::uint8_t {
   kBinary,  // `a` or `d`, literals as 2v or 2v + 1 in groups of 7 bits, low group first; 0 ends
   kText     // a clause a line, `d` before what is deleted; 0 ends
@@ -58,7 +58,7 @@ class DratReader {
 
   enum class Outcome : std::uint8_t { kStep, kEnd, kMalformed };
   Outcome next(DratStep& step);
-  /// What is wrong, after kMalformed.
+  /// Description of the error, after kMalformed.
   const std::string& problem() const { return problem_; }
   /// Bytes that were read, and steps.
   std::int64_t offset() const { return offset_; }

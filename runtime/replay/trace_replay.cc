@@ -7,7 +7,7 @@ using Kind = ReplayVerdict::Kind;
 
 namespace {
 
-/// None for the control of a plan and the like, of which traces do not speak.
+/// None for atoms of a plan's control and the like, which traces do not mention.
 const AtomClaims* claims_of(const ClaimedTrace& trace, AtomKind kind,
                             std::optional<Timepoint> time) {
   if (kind == AtomKind::kPredicate) return &trace.predicates;
@@ -138,8 +138,8 @@ ReplayVerdict TraceReplay::replay(const ClaimedTrace& trace) {
   return verdict;
 }
 
-/// The first timepoint from `first` to `last` up to which nothing goes with the claims; kAgrees if
-/// there is none.
+/// The first timepoint from `first` to `last` up to which no trace of the model agrees with the
+/// claims; kAgrees if there is none.
 ReplayVerdict TraceReplay::find_failure(const Units& units, Timepoint first, Timepoint last) {
   ReplayVerdict verdict;
   for (Timepoint n = first; n <= last; ++n) {

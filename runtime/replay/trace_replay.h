@@ -33,8 +33,8 @@ struct ReplayVerdict {
   std::string impossible_atom;
 };
 
-/// Holds traces against a compiled model by means of a solver: what a trace says is assumed, and
-/// the solver looks for values of everything else.
+/// Checks traces against a compiled model with a solver: the claims of a trace are assumed, and the
+/// solver finds values of everything else.
 class TraceReplay {
  public:
   using MakeSolver = std::function<std::unique_ptr<SatSolver>()>;
@@ -46,8 +46,8 @@ class TraceReplay {
   /// `trace` has one of these lengths and names atoms of the model only. One solver call if the
   /// trace agrees and ends at the horizon, two if it ends before, else one for each timepoint.
   ReplayVerdict replay(const ClaimedTrace& trace);
-  /// For a trace that fails at `timepoint`: origins of the model that cannot hold together with
-  /// what it says. Copies the model.
+  /// For a trace that fails at `timepoint`: origins of the model that cannot hold together with its
+  /// claims. Copies the model.
   UnsatCore blame(const ClaimedTrace& trace, Timepoint timepoint) const;
 
  private:

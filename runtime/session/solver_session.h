@@ -14,8 +14,8 @@ namespace parallax::runtime {
 using compiler::CompiledModel;
 using compiler::Timepoint;
 
-/// Variables beyond those of a model, by which its clauses and what is looked for are bound to a
-/// length. Enumerators and the formula that a proof refutes number them alike.
+/// Variables beyond those of a model, which bind its clauses and the search to a length.
+/// Enumerators and the formula that a proof refutes number them alike.
 class LengthVariables {
  public:
   explicit LengthVariables(const compiler::CompiledModel& model)
@@ -45,7 +45,7 @@ enum class Loading : std::uint8_t {
   kWitness,
 };
 
-/// Has the model clauses that bind a trace up to its end only, and not what the model does behind
+/// Has the model clauses that bind a trace up to its end only, and not the model's states behind
 /// it: those of a plan, and of the bounds of objectives?
 bool has_ending_clauses(const CompiledModel& model);
 /// Is this one of them? A definition never is.
@@ -71,9 +71,9 @@ class SolverSession {
   /// Is there a valuation with horizon `n` under these assumptions? `values()` has it afterwards.
   SolveStatus solve(Timepoint n, std::span<const Literal> assumptions);
   /// The same for a valuation up to `n` that the model, without its plan, can continue to its
-  /// horizon: where a trace has ended nobody performs the rest of the plan. Two calls where there
-  /// is one: the first, which only needs the clauses up to `n`, refutes most of what can be
-  /// refuted.
+  /// horizon: after a trace has ended nobody performs the rest of the plan. Two calls where such a
+  /// valuation may exist: the first, which only needs the clauses up to `n`, refutes most of what
+  /// can be refuted.
   SolveStatus solve_whole(Timepoint n, std::span<const Literal> assumptions);
   /// Limits each solver call of the next `solve` or `solve_whole`, which then answers kUnknown.
   void limit_conflicts(std::int64_t most) { limit_ = most; }
@@ -142,14 +142,14 @@ class SelectedOrigins {
 
 struct NeededOrigins {
   std::vector<std::uint32_t> origins;  // ascending
-  /// The solver was stopped: what was not tried until then counts as needed.
+  /// The solver was stopped: candidates not tried until then count as needed.
   bool stopped = false;
 };
 
-/// What of `candidates` contradicts itself (and what `selected` requires) so that none can be left
-/// out. Deletion: the candidates are tried from the end; one that is not needed goes, together with
-/// all that its absence frees. The candidates contradict each other. Cost: at most one solver call
-/// for each.
+/// Shrinks `candidates` to a set that contradicts itself (and what `selected` requires) and of
+/// which none can be left out. Deletion: the candidates are tried from the end; one that is not
+/// needed goes, together with all that its absence frees. The candidates must contradict each
+/// other. Cost: at most one solver call for each.
 NeededOrigins shrink_to_needed(SelectedOrigins& selected, std::vector<std::uint32_t> candidates);
 
 struct UnsatCore {

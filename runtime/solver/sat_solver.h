@@ -20,7 +20,7 @@ enum class [[nodiscard]] SolveStatus : std::uint8_t{
     kUnknown,  // interrupted or out of its budget
 };
 
-/// Is there what the solver was asked for?
+/// Is there a solution, according to the status?
 inline base::Known possible(SolveStatus status) {
   switch (status) {
     case SolveStatus::kSatisfiable:
@@ -59,8 +59,8 @@ class SatSolver {
   virtual bool is_fixed(Literal literal) const = 0;
   /// The value that the search tries first.
   virtual void set_phase(Literal literal) = 0;
-  /// The next call of solve answers kUnknown after so many conflicts. Unlike time, this is the same
-  /// on every machine.
+  /// The next call of solve answers kUnknown after this many conflicts. Unlike time, this is the
+  /// same on every machine.
   virtual void limit_conflicts(std::int64_t most) = 0;
   /// Conflicts so far: clauses that were learned.
   virtual std::int64_t conflicts() const = 0;
@@ -72,7 +72,7 @@ class SatSolver {
 /// answers kUnknown soon; `stop` may be null and outlives the solver.
 std::unique_ptr<SatSolver> make_cadical_solver(const std::atomic<bool>* stop = nullptr);
 
-/// The same solver until it has met so many conflicts in all; then every call that needs more
+/// The same solver until it has met this many conflicts in all; then every call that needs more
 /// answers kUnknown. Unlike a limit on time, this is the same on every machine.
 std::unique_ptr<SatSolver> make_limited_solver(std::unique_ptr<SatSolver> solver,
                                                std::int64_t conflicts);
@@ -86,9 +86,9 @@ enum class ProofUse : std::uint8_t {
   kIncremental,
 };
 
-/// The same solver; what it learns and deletes goes to `proof` as DRAT, until it finds a
-/// contradiction that rests on no assumption. The stream outlives the solver and is the caller's to
-/// flush and to ask for errors.
+/// The same solver; clauses that it learns and deletes go to `proof` as DRAT, until it finds a
+/// contradiction that rests on no assumption. The stream outlives the solver; the caller flushes it
+/// and asks for errors.
 std::unique_ptr<SatSolver> make_proving_solver(std::FILE* proof, ProofForm form,
                                                const std::atomic<bool>* stop = nullptr,
                                                ProofUse use = ProofUse::kOneCall);

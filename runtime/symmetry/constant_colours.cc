@@ -54,8 +54,8 @@ void ConstantColours::start(std::span<const std::uint32_t> marked) {
   nodes_ = kinds_;
 }
 
-/// What an atom is, from the constants that it names and the clauses that it is in; what a constant
-/// is, from the atoms that name it. Sums forget the order of clauses and of literals.
+/// Recolours each atom by the constants that it names and the clauses that it is in, and each
+/// constant by the atoms that name it. Sums forget the order of clauses and of literals.
 void ConstantColours::refine_once() {
   next_.assign(nodes_.size(), 0);
   std::size_t begin = 0;
@@ -90,7 +90,7 @@ void ConstantColours::refine_once() {
   work_ += size() + static_cast<std::int64_t>(nodes_.size());
 }
 
-/// Of different colours of atoms and constants.
+/// Number of different colours of atoms and constants.
 std::size_t ConstantColours::count() const {
   std::size_t different = 0;
   for (const auto* all : {&nodes_, &constants_}) {
@@ -105,7 +105,7 @@ std::size_t ConstantColours::count() const {
 ConstantColours::Colours ConstantColours::refined(std::span<const std::uint32_t> marked,
                                                   std::size_t& rounds) {
   start(marked);
-  // A colour knows all colours before it, so that none are told alike again.
+  // A colour determines all colours before it, so that constants once told apart stay so.
   rounds = 0;
   for (std::size_t before = 0, now = count(); before < now; ++rounds) {
     before = now;

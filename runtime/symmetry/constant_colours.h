@@ -22,7 +22,7 @@ class ConstantColours {
   /// Where each of `marked` is told apart by its place in the list. Refined until no round tells
   /// more apart; `rounds` gets how many those were.
   Colours refined(std::span<const std::uint32_t> marked, std::size_t& rounds);
-  /// After so many rounds: to be compared with what took so many.
+  /// The colours after this many rounds, for comparison with colours that took as many.
   Colours after(std::span<const std::uint32_t> marked, std::size_t rounds);
   /// Literals looked at so far.
   std::int64_t work() const { return work_; }

@@ -13,8 +13,8 @@ mpz_class ConstantGroup::order() const {
 
 namespace {
 
-/// The pairs of a level's orbit and other constants, by what the level's group makes of them (its
-/// orbits on pairs): as the next level's orbits, moved along with the base.
+/// The pairs of a level's orbit and other constants, by their orbits under the level's group: the
+/// next level's orbits, moved along with the base.
 std::vector<ConstantGroup::Tie> ties_of(const ConstantGroup::Level& level,
                                         const std::vector<std::uint32_t>& whole,
                                         const std::vector<std::uint32_t>& below) {

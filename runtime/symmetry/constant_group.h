@@ -11,8 +11,8 @@
 namespace parallax::runtime {
 
 /// A group of permutations of constants as a chain of stabilizers (Sims 1970): a level has the
-/// permutations that leave the bases of the levels before it where they are. Every permutation of
-/// the group is in exactly one way a product of one from each level.
+/// permutations that fix the bases of the levels before it. Every permutation of the group is in
+/// exactly one way a product of one from each level.
 struct ConstantGroup {
   struct Level {
     std::uint32_t base = 0;
@@ -22,14 +22,16 @@ struct ConstantGroup {
     std::vector<ConstantMap> to;
   };
 
-  /// Those that some permutation moves; everywhere here a constant is its number in this list.
+  /// The constants that some permutation moves; everywhere here a constant is its number in this
+  /// list.
   std::vector<std::string> constants;
   std::vector<Level> levels;
   /// By level, as far as levels have permutations, and once more: by constant, the number of its
   /// orbit under that level's group. The levels behind these exchange within the last orbits.
   std::vector<std::vector<std::uint32_t>> orbits;
-  /// Of `one`, which is in the orbit of a level's base, and of another constant: what permutations
-  /// of the level take to each other has one kind. Left out is the largest kind of each orbit.
+  /// Pair of `one`, which is in the orbit of a level's base, and another constant. Pairs that
+  /// permutations of the level take to each other have one kind. The largest kind of each orbit is
+  /// left out.
   struct Tie {
     std::uint32_t one, other, kind;
   };
@@ -38,10 +40,10 @@ struct ConstantGroup {
   mpz_class order() const;
 };
 
-/// What group_of makes a group of, in numbers of all constants.
+/// Input of group_of, in numbers of all constants.
 struct GroupParts {
   std::vector<ConstantGroup::Level> levels;
-  std::vector<std::uint32_t> bases;                // theirs, and others that do not move
+  std::vector<std::uint32_t> bases;  // bases of the levels, and other constants that do not move
   std::vector<std::vector<std::uint32_t>> orbits;  // by level and once more; none: only exchanges
 };
 

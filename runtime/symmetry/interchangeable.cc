@@ -12,7 +12,7 @@ using compiler::CompiledModel;
 
 namespace {
 
-/// Clauses that checks may look at, beyond so many of each that the model has.
+/// Clauses that checks may look at, beyond 16 for each clause of the model.
 constexpr std::int64_t kWork = 1'000'000;
 
 /// Literals that refinements may look at, beyond 16 times those of the model.
@@ -46,7 +46,7 @@ NodeMap moved_nodes(const NamedAtoms& atoms, const ConstantMap& map) {
       if (*to != node) moved.emplace_back(node, *to);
     }
   }
-  // What mentions several is met once from each.
+  // An atom that mentions several constants is met once from each.
   std::sort(moved.begin(), moved.end());
   moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
   return moved;

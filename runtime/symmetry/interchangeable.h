@@ -10,14 +10,15 @@
 
 namespace parallax::runtime {
 
-/// Constants that a compiled model does not tell apart: replacing them in all names makes a trace
-/// of a trace. Found on the clauses, so a start state, a plan, a state constraint or a goal that
+/// Constants that a compiled model does not tell apart: replacing them in all names turns a trace
+/// into a trace. Found on the clauses, so a start state, a plan, a state constraint or a goal that
 /// names one of them tells it apart.
 struct Interchangeables {
-  /// Any two of a set; each of two and more, in the order in which the model mentions them first.
+  /// Any two constants of a set can be exchanged. Each set has two or more, in the order in which
+  /// the model mentions them first.
   std::vector<std::vector<std::string>> sets;
-  /// Several at once, which makes more of them together with the sets: by symmetry, its cycles, in
-  /// each of which a constant takes the place of the one before it.
+  /// Symmetries that move several constants at once and enlarge the group of the sets: by symmetry,
+  /// its cycles, in each of which a constant takes the place of the one before it.
   std::vector<std::vector<std::vector<std::string>>> together;
   bool empty() const { return sets.empty() && together.empty(); }
 };
@@ -25,10 +26,10 @@ struct Interchangeables {
 /// A symmetry as the named nodes that it moves: each, and the one whose place it takes.
 using NodeMap = std::vector<std::pair<ModelNode, ModelNode>>;
 
-/// What a symmetry of the constants makes of the atoms that it moves. `map` was checked.
+/// Images of the atoms that a symmetry of the constants moves. `map` must have been checked.
 NodeMap moved_nodes(const NamedAtoms& atoms, const ConstantMap& map);
 
-/// How long may be searched for symmetries of several constants at once?
+/// Effort of a search for symmetries of several constants at once.
 enum class SymmetryEffort : std::uint8_t {
   kQuick,     // before anything is known to be hard: some tenths of a second
   kThorough,  // some seconds
@@ -41,7 +42,7 @@ class ModelSymmetry {
   explicit ModelSymmetry(const compiler::CompiledModel& model,
                          SymmetryEffort effort = SymmetryEffort::kThorough);
   const Interchangeables& constants() const { return constants_; }
-  /// They generate the group: exchanges of neighbours in each set, and those of several at once.
+  /// Generators of the group: exchanges of neighbours in each set, and those of several at once.
   std::span<const NodeMap> generators() const {
     return std::span(generators_).first(is_complete_ ? generators_.size() : exchanges_);
   }
@@ -49,7 +50,7 @@ class ModelSymmetry {
   std::span<const NodeMap> all() const { return generators_; }
   bool empty() const { return generators_.empty(); }
   const ConstantGroup& group() const { return group_; }
-  /// At least so many symmetries there are.
+  /// Lower bound on the number of symmetries.
   const mpz_class& known_order() const { return known_order_; }
 
  private:
@@ -59,9 +60,9 @@ class ModelSymmetry {
 
   Interchangeables constants_;
   std::vector<NodeMap> generators_;
-  std::size_t exchanges_ = 0;  // so many exchange two constants; they come first
+  std::size_t exchanges_ = 0;  // number that exchange two constants; they come first
   bool is_complete_ = true;
-  bool is_settled_ = true;             // what sets do not connect differs
+  bool is_settled_ = true;             // constants of different sets differ
   std::vector<std::uint32_t> set_of_;  // by constant
   ConstantGroup group_;
   mpz_class known_order_ = 1;

@@ -27,7 +27,7 @@ class LexLeader {
   using AddClause = std::function<void(std::span<const Literal>)>;
   using NewVariable = std::function<Literal()>;
 
-  /// `order`: blocks of positive literals of the model; what an order leaves out is left open.
+  /// `order`: blocks of positive literals of the model; atoms outside the order are left open.
   LexLeader(const CompiledModel& model, std::span<const NodeMap> generators,
             const std::vector<std::vector<Literal>>& order);
 
@@ -79,8 +79,8 @@ class SymmetryBreaker {
   Literal guard_;
 };
 
-/// The model with the clauses over the whole order in it, for whoever lists what they leave. Its
-/// traces are traces of `model`. The chains' variables are added to the fixed ones.
+/// The model with the clauses over the whole order in it, for callers that list the remaining
+/// traces. Its traces are traces of `model`. The chains' variables are added to the fixed ones.
 CompiledModel broken_model(const CompiledModel& model, std::span<const NodeMap> generators,
                            const std::vector<std::vector<Literal>>& order);
 

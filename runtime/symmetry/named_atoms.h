@@ -12,7 +12,7 @@
 
 namespace parallax::runtime {
 
-/// What a variable is at any timepoint: the fixed ones first, then the slots.
+/// A variable regardless of its timepoint: the fixed ones first, then the slots.
 using ModelNode = std::uint32_t;
 
 inline ModelNode node_of(const compiler::CompiledModel& model, std::int32_t variable) {
@@ -35,26 +35,26 @@ struct ConstantPlace {
 };
 
 /// The constants among the arguments of a model's atoms, numbered in the order in which the atoms
-/// mention them first: fluents, events, what is fixed. Numbers are no constants here.
+/// mention them first: fluents, events, fixed atoms. Numbers are no constants here.
 class NamedAtoms {
  public:
   struct Node {
-    std::string name;  // with what tells atoms of one text apart: kind and time
+    std::string name;  // with kind and time, which tell atoms of one text apart
     std::vector<ConstantPlace> places;
   };
 
   explicit NamedAtoms(const compiler::CompiledModel& model);
 
   const std::vector<std::string>& constants() const { return constants_; }
-  /// Of a node without a name: no text.
+  /// The text of a node; a node without a name has none.
   const Node& node(ModelNode node) const { return nodes_[node]; }
   std::size_t node_count() const { return nodes_.size(); }
   /// Nodes that mention the constant, each once.
   const std::vector<ModelNode>& mentions(std::uint32_t constant) const {
     return mentions_[constant];
   }
-  /// The node whose name is that of `node` with every constant replaced by its image; none: there
-  /// is none.
+  /// The node whose name is that of `node` with every constant replaced by its image; none if the
+  /// model has no such node.
   std::optional<ModelNode> image(ModelNode node, std::span<const std::uint32_t> images) const;
 
  private:

@@ -13,7 +13,7 @@ namespace parallax::runtime {
 
 namespace {
 
-/// An atom that is true at some timepoint: what it is, and the constants it connects.
+/// An atom that is true at some timepoint: its kind, and the constants it connects.
 struct Edge {
   std::uint32_t kind = 0, layer = 0;
   std::span<const std::uint32_t> ends;
@@ -22,7 +22,7 @@ struct Edge {
 using Colours = std::vector<std::uint32_t>;  // by constant; equal ones are not told apart yet
 using Form = std::vector<std::uint32_t>;
 
-/// Kinds of edges that are no atoms of the model's: the length of the trace, what was returned.
+/// Kinds of edges that are no atoms of the model: the length of the trace, returned objects.
 constexpr auto kLength = std::numeric_limits<std::uint32_t>::max();
 
 /// The least form that a group's permutations give a graph, and how many leave the graph as it is.
@@ -72,7 +72,7 @@ class FormSearch {
     colours = std::move(next);
   }
 
-  /// What no permutation of the node's level takes to each other is told apart.
+  /// Separates constants that no permutation of the node's level takes to each other.
   void split_by_orbits(Node& node) const {
     if (node.level >= group_.orbits.size()) return;
     const auto& orbits = group_.orbits[node.level];
@@ -205,8 +205,8 @@ class FormSearch {
     return before == after;
   }
 
-  /// A permutation of the group that takes what stands at one place of the level's orbit to what
-  /// stands at another, and leaves what was chosen before where it is.
+  /// A permutation of the group that takes the constant at one place of the level's orbit to the
+  /// one at another, and leaves the constants chosen before where they are.
   ConstantMap between(const Node& node, std::size_t one, std::size_t other) const {
     const auto& level = group_.levels[node.level];
     ConstantMap map(node.to.size());
@@ -315,7 +315,7 @@ TraceOrbits::Term TraceOrbits::parse(const std::string& name) {
 }
 
 Orbit TraceOrbits::of(const Trace& trace) const {
-  // Of different lengths there is no exchange.
+  // Traces of different lengths are never exchanged.
   std::vector<Edge> edges = {{kLength, static_cast<std::uint32_t>(trace.points.size()), {}}};
   const auto layers = 4 * trace.points.size() + 1;
   const auto add = [&](const Term& term, std::size_t layer) {

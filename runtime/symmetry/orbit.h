@@ -14,26 +14,26 @@
 
 namespace parallax::runtime {
 
-/// What a trace is up to exchanging constants.
+/// Orbit of a trace under exchanging constants.
 struct Orbit {
-  /// Equal for two traces if and only if symmetries make one of the other.
+  /// Equal for two traces if and only if symmetries turn one into the other.
   std::string form;
-  mpz_class size;  // so many traces are of it
+  mpz_class size;  // number of traces in the orbit
 };
 
-/// By what traces are told apart.
+/// Atoms by which traces are told apart.
 enum class Compared : std::uint8_t {
   kObserved,     // HoldsAt and Happens
   kEverything,   // also releases and user predicates
-  kKey,          // of a plan or a state constraint: what happens, and what performs returned
-  kKeyAndStart,  // and what holds at first
+  kKey,          // the key of a plan or a state constraint: events, and returned objects
+  kKeyAndStart,  // the key, and the fluents that hold at first
 };
 
 /// Tells orbits of traces apart. A trace is seen as a graph whose vertices are the constants and
-/// whose coloured edges are its atoms; its form is the least that a permutation of the group gives
-/// (search tree along the chain of stabilizers, whose nodes are partitions refined by what they are
-/// connected to; McKay 1981, and Linton 2004 for images under a group), and how many permutations
-/// leave it as it is (orbits of the tree's nodes, multiplied) gives the size.
+/// whose coloured edges are its atoms. Its form is the least that a permutation of the group gives
+/// (search tree along the chain of stabilizers, whose nodes are partitions refined by their
+/// connections; McKay 1981, and Linton 2004 for images under a group). Its size follows from the
+/// number of permutations that leave it as it is (orbits of the tree's nodes, multiplied).
 class TraceOrbits {
  public:
   /// `group` outlives the orbits.
@@ -43,7 +43,7 @@ class TraceOrbits {
   Orbit of(const Trace& trace) const;
 
  private:
-  /// An atom's name: what kind of atom it is, and which constants of the group are its arguments.
+  /// An atom's name: the kind of atom, and the constants of the group among its arguments.
   struct Term {
     std::uint32_t kind = 0;
     std::vector<std::uint32_t> constants;

@@ -65,7 +65,7 @@ void PermutationCheck::collect() {
   }
 }
 
-/// What only a check needs: many models have no two constants that are worth one.
+/// Prepares tables that only a check needs: many models have no two constants worth checking.
 void PermutationCheck::prepare() {
   seen_.assign(entries_.size(), 0);
   by_hash_.reserve(entries_.size());
@@ -108,7 +108,7 @@ std::int32_t PermutationCheck::time_of(std::int32_t variable) const {
   return place < 0 ? -1 : place / model_.stride();
 }
 
-/// Of a literal whose variable is taken for the node `image`, seen from timepoint `origin`.
+/// Hash of a literal whose variable is mapped to the node `image`, seen from timepoint `origin`.
 std::uint64_t PermutationCheck::literal_hash(Literal literal, ModelNode image,
                                              std::int32_t origin) const {
   const auto time = time_of(literal.var());
@@ -116,7 +116,7 @@ std::uint64_t PermutationCheck::literal_hash(Literal literal, ModelNode image,
   return mixed(image, 2 * from + (literal.is_positive() ? 1 : 0));
 }
 
-/// The same whatever the order of the literals.
+/// Hash of a mapped clause; the same whatever the order of the literals.
 std::uint64_t PermutationCheck::clause_hash(const Entry& entry) const {
   std::uint64_t sum = 0;
   for (const auto literal : model_.clauses[entry.clause]) {
@@ -125,7 +125,7 @@ std::uint64_t PermutationCheck::clause_hash(const Entry& entry) const {
   return mixed(sum, static_cast<std::uint64_t>(entry.section));
 }
 
-/// Of what the mapped definitions of an auxiliary say; the same whatever their order.
+/// Hash of the mapped definitions of an auxiliary; the same whatever their order.
 std::uint64_t PermutationCheck::definition_hash(ModelNode auxiliary) const {
   std::uint64_t all = 0;
   for (const auto number : definitions_[auxiliary]) {
@@ -219,7 +219,8 @@ bool PermutationCheck::is_bijective() {
   return from == to;
 }
 
-/// In order of rank, so that what an auxiliary is defined by has its image before.
+/// Maps auxiliaries in order of rank, so that the parts of each definition have their images
+/// before.
 bool PermutationCheck::map_auxiliaries() {
   std::set<std::pair<std::uint32_t, ModelNode>> due;
   const auto touch = [&](ModelNode node) {

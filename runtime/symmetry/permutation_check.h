@@ -13,8 +13,8 @@ using ConstantMap = std::vector<std::uint32_t>;
 
 /// Does replacing constants by their images in all names map the clauses of a model onto
 /// themselves? Clauses that hold at every timepoint are looked at once. Auxiliaries are mapped
-/// along with what they are defined by; invariants, which follow from the rest, are left out.
-/// Whatever the clauses come from (axioms, a plan, state constraints) counts alike.
+/// along with their definitions; invariants, which follow from the rest, are left out. The origin
+/// of a clause (an axiom, a plan, a state constraint) makes no difference.
 class PermutationCheck {
  public:
   /// `model` and `atoms` outlive the check. Linear in the clauses of one timepoint and in those

@@ -10,7 +10,7 @@ namespace parallax::runtime {
 
 namespace {
 
-/// Clauses that checks may look at, beyond so many times those of the model.
+/// Clauses that checks may look at, beyond 16 for each clause of the model.
 constexpr std::int64_t kChecks = 1'000'000;
 /// Words that permutations of all levels may take.
 constexpr std::int64_t kMostWords = 8'000'000;
@@ -92,7 +92,8 @@ void SymmetrySearch::choose_bases() {
   }
 }
 
-/// By constant, a number of its orbit under what is known to leave the bases before the level.
+/// By constant: the number of its orbit under the known permutations that fix the bases before the
+/// level.
 std::vector<std::uint32_t> SymmetrySearch::orbits_at(std::size_t level) const {
   Classes classes(set_of_.size());
   std::map<std::uint32_t, std::uint32_t> first_of_set;
@@ -173,8 +174,8 @@ void SymmetrySearch::close_level(std::size_t level) {
   }
 }
 
-/// In the order in which they are tried: what makes an exchange of it, or leaves it where it is,
-/// is as a rule what the model means. One of a set stands for all.
+/// Images in the order in which they are tried: a constant that makes an exchange, or stays where
+/// it is, is as a rule what the model means. One of a set stands for all.
 std::vector<std::uint32_t> SymmetrySearch::images_to_try(
     const std::vector<std::uint32_t>& from, const std::vector<std::uint32_t>& to,
     std::uint32_t constant, const std::vector<std::uint32_t>& cell) const {
@@ -224,7 +225,7 @@ std::optional<ConstantMap> SymmetrySearch::find(std::vector<std::uint32_t> from,
   return finish(source, target);
 }
 
-/// Within sets every choice is as good as any other: what can stay where it is does.
+/// Within sets every choice is as good as any other: constants stay where they are if they can.
 std::optional<ConstantMap> SymmetrySearch::finish(const Colours& source, const Colours& target) {
   std::map<std::uint64_t, std::vector<std::uint32_t>> open;
   auto map = identity(source.size());

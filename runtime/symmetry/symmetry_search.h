@@ -11,11 +11,11 @@ namespace parallax::runtime {
 /// two: for every constant of a base that exchanges leave open, and every constant of its colour,
 /// one that takes the first to the second and leaves the bases before where they are
 /// (individualization and refinement, as in McKay 1981; from the last base to the first, so that
-/// products of what was found are not looked for). Each is one that the exact check accepts.
+/// products of known symmetries are not sought). Each is one that the exact check accepts.
 class SymmetrySearch {
  public:
   /// `set_of`: by constant, the number of the set in which any two are exchangeable. All outlive
-  /// the search. `most`: so many literals may be looked at by refinements, beyond 16 times those of
+  /// the search. `most`: number of literals that refinements may look at, beyond 16 times those of
   /// the model.
   SymmetrySearch(PermutationCheck& check, ConstantColours& colours,
                  const std::vector<std::uint32_t>& set_of, std::int64_t most);
@@ -26,7 +26,7 @@ class SymmetrySearch {
   bool is_complete() const { return complete_; }
   /// All symmetries of the model; those within sets, if the search is not complete.
   ConstantGroup group(const std::vector<std::string>& constants) const;
-  /// At least so many symmetries are known.
+  /// Lower bound on the number of symmetries.
   mpz_class known_order() const;
 
  private:

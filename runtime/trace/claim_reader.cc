@@ -80,7 +80,7 @@ const char* word_of(AtomKind kind) {
 
 }  // namespace
 
-/// Receives what the parser of nlohmann-json, which does not recurse, reads; false stops it.
+/// Receives the events of nlohmann-json's parser, which does not recurse; false stops it.
 class JsonBuilder {
  public:
   JsonBuilder(JsonDocument& document, std::string_view text, std::uint32_t begin,

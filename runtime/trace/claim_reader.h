@@ -23,13 +23,13 @@ class JsonValue {
   JsonKind kind() const;
   base::SourceRange source() const;
   bool is(JsonKind wanted) const { return kind() == wanted; }
-  bool boolean() const;                         // of kBoolean
-  std::string_view text() const;                // of kString, decoded; of kNumber, as it is written
-  std::optional<std::int64_t> integer() const;  // of a kNumber that is a whole one in 64 bits
-  std::vector<JsonValue> items() const;         // of kArray
-  /// Of kObject: the value of a member, if there is one. Linear in the members.
+  bool boolean() const;           // only for kBoolean
+  std::string_view text() const;  // for kString, decoded; for kNumber, as it is written
+  std::optional<std::int64_t> integer() const;  // for a kNumber that is an integer of 64 bits
+  std::vector<JsonValue> items() const;         // for kArray
+  /// The value of an object's member, if there is one. Linear in the members.
   std::optional<JsonValue> find(std::string_view name) const;
-  /// Of kObject: names and values in turn.
+  /// The names and values of an object in turn.
   std::vector<JsonValue> members() const;
 
  private:
@@ -75,12 +75,12 @@ class JsonDocument {
   std::string pool_;  // decoded strings
 };
 
-/// What the readers of both formats share: the names of the model, and how a shape is complained
-/// of.
+/// Services shared by the readers of both formats: the names of the model, and errors about the
+/// shape of a text.
 class ClaimReader {
  public:
   ClaimReader(const Vocabulary& vocabulary, base::DiagnosticSink& sink);
-  /// For files that no model is known of: takes any name.
+  /// For files whose model is not known: takes any name.
   explicit ClaimReader(base::DiagnosticSink& sink) : sink_(sink) {}
 
   /// E6102: expected `what`, found the value.
@@ -88,7 +88,7 @@ class ClaimReader {
   /// Adds a claim; E6103 unless the model has the atom, E6102 if it was claimed otherwise before.
   bool claim(compiler::AtomKind kind, std::string name, const AtomClaim& claim, AtomClaims& claims);
   base::DiagnosticSink& sink() { return sink_; }
-  /// Has the model such a symbol?
+  /// Does the model have such a symbol?
   bool has_symbol(compiler::AtomKind kind, const std::string& symbol) const;
   /// Can the event happen at the end of a trace of this length?
   bool may_happen_last(const std::string& event, Timepoint length) const;

@@ -130,8 +130,8 @@ bool DecreasonerFormat::is_true(const Trace& trace, const Proposition& propositi
   return contains(fluents, compiler::FluentId(proposition.number));
 }
 
-/// What was true and is no more, then what was false and is true; of the first timepoint all that
-/// holds.
+/// Appends fluents that became false, then fluents that became true; at the first timepoint all
+/// that hold.
 void DecreasonerFormat::append_changes(const Trace& trace, std::size_t t, Lines& out) const {
   const auto& now = trace.points[t].holds;
   Lines gone, come;

@@ -9,17 +9,17 @@ namespace parallax::runtime {
 
 using Lines = std::vector<std::string>;
 
-/// What the options of a model say of its printed form, and what the compiled model does not tell.
+/// Options of a model for its printed form, and facts that the compiled model does not tell.
 struct DecreasonerOptions {
-  bool time_diff = true;        // what changed, instead of full states
+  bool time_diff = true;        // changes instead of full states
   bool model_diff = false;      // from model 2 on, the difference from the one before
   bool show_predicates = true;  // the block `P`
   /// `completion Happens`: the events of the last timepoint are said to be false.
   bool events_completed = false;
 };
 
-/// The printed form of the Discrete Event Calculus Reasoner 1.0, `model K:` and what follows. False
-/// atoms are listed only where that program has a proposition for them, that is where some formula
+/// The printed form of the Discrete Event Calculus Reasoner 1.0, from `model K:` on. False atoms
+/// are listed only where that program has a proposition for them, that is where some formula
 /// mentions them; a model that was compiled with its meaning knows which these are. The number of
 /// models, which that program prints first, comes last, because models are printed as they are
 /// found.

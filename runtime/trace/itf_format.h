@@ -18,11 +18,11 @@ struct AtomText {
   friend bool operator==(const AtomText&, const AtomText&) = default;
 };
 
-/// None for what is no printed atom: no parentheses, unbalanced ones, an empty argument.
+/// None for a text that is no printed atom: no parentheses, unbalanced ones, an empty argument.
 std::optional<AtomText> split_atom(std::string_view atom);
 std::string join_atom(const AtomText& parts);
 
-/// What ITF files say of their making.
+/// Metadata of ITF files.
 struct ItfOptions {
   std::string tool;    // "parallax 0.3.0"
   std::string source;  // the model as the user named it
@@ -30,7 +30,7 @@ struct ItfOptions {
   std::map<std::string, compiler::TextPlace, std::less<>> declared;
 };
 
-/// The names that the format gives to what is no fluent.
+/// Names that the format gives to variables other than fluents.
 inline constexpr std::string_view kItfAction = "mbt::actionTaken";
 inline constexpr std::string_view kItfPicks = "mbt::nondetPicks";
 inline constexpr std::string_view kItfReleased = "ReleasedAt::";

@@ -1,6 +1,6 @@
-// The Informal Trace Format, as itf_format.h describes what is written; also read is what other
-// tools write for the same: plain booleans for fluents without arguments, lists for tuples, maps
-// that do not list every atom, files without the variables of releases, predicates or events.
+// Reader of the Informal Trace Format as itf_format.h describes it. It also reads the variants of
+// other tools: plain booleans for fluents without arguments, lists for tuples, maps that do not
+// list every atom, files without the variables of releases, predicates or events.
 
 #include <fmt/format.h>
 

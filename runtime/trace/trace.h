@@ -37,14 +37,14 @@ bool contains(const std::vector<Id>& ids, Id id) {
   return std::binary_search(ids.begin(), ids.end(), id);
 }
 
-/// What is true at one timepoint: ids, ascending.
+/// Atoms that are true at one timepoint: ids, ascending.
 struct TracePoint {
   std::vector<compiler::FluentId> holds;
   std::vector<compiler::EventId> happens;
   std::vector<compiler::FluentId> released;
   /// The plan's step that is performed here: an index into CompiledModel::plan.
   std::optional<std::size_t> plan_step;
-  /// Did that step succeed? If it is one that returns something, what it returned.
+  /// Did that step succeed? `returned` is the object, if the step returns one.
   bool succeeded = false;
   std::optional<std::string> returned;
   /// The returned objects that the plan still knows here, by register: `?item1`, `cup1`.
@@ -86,10 +86,12 @@ Trace decode_trace(const CompiledModel& model, Symbols symbols, Timepoint length
                    const std::function<bool(compiler::Literal)>& value);
 
 /// The events of the trace, in order, as one stable text: `Go(r2);PickUp();` (several events of one
-/// timepoint are joined by `+`); what a perform returned stands behind it: `Detect(cup)=cup1;`.
+/// timepoint are joined by `+`); the object that a perform returned stands behind it:
+/// `Detect(cup)=cup1;`.
 std::string event_key(const Trace& trace);
 
-/// Changes only: what holds at 0, then per timepoint the events, what ceased and what began.
+/// Changes only: the fluents that hold at 0, then per timepoint the events, and the fluents that
+/// ceased and began.
 std::string to_text(const Trace& trace);
 /// One JSON object on one line, fields as documented for `parallax traces --format jsonl`.
 std::string to_jsonl(const Trace& trace);

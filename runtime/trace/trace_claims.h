@@ -11,15 +11,15 @@
 
 namespace parallax::runtime {
 
-/// What a text says of an atom, and where.
+/// Value that a text claims for an atom, and where.
 struct AtomClaim {
   bool value = true;
   base::SourceRange source;
 };
 
-/// What a text says of the atoms of one kind at one timepoint, by printed name.
+/// Values that a text claims for the atoms of one kind at one timepoint, by printed name.
 struct AtomClaims {
-  /// What is not listed is false. Otherwise nothing is said of it.
+  /// Atoms that are not listed are false. Otherwise nothing is claimed about them.
   bool closed = false;
   std::map<std::string, AtomClaim, std::less<>> listed;
 

@@ -8,20 +8,20 @@
 
 namespace parallax::runtime {
 
-/// How a trace is written, as pieces that follow one another: what many traces have in common is
-/// made once. A format has no state.
+/// A format of traces, as pieces that follow one another: a piece that many traces have in common
+/// is made once. A format has no state.
 class TraceFormat {
  public:
   virtual ~TraceFormat() = default;
-  /// What comes before the first timepoint. `number` is in decimal digits, and so is `orbit`
+  /// Text before the first timepoint. `number` is in decimal digits, and so is `orbit`
   /// (Trace::orbit), which may be empty.
   virtual std::string head(const std::string& number, const std::string& orbit) const = 0;
-  /// What introduces timepoint t.
+  /// Text that introduces timepoint t.
   virtual std::string introduction(Timepoint t) const = 0;
   /// One timepoint, independent of its number; `before` is the timepoint before, null at 0.
   virtual std::string point(const compiler::SymbolTable& symbols, const TracePoint* before,
                             const TracePoint& point) const = 0;
-  /// What comes after the last timepoint, with the end of the line.
+  /// Text after the last timepoint, with the end of the line.
   virtual std::string tail(const std::vector<std::string>& predicates) const = 0;
 };
 
@@ -34,14 +34,14 @@ std::string format_trace(const TraceFormat& format, const Trace& trace);
 /// With a number that may be too large for `trace.number`, in decimal digits.
 std::string format_trace(const TraceFormat& format, const Trace& trace, const std::string& number);
 
-/// What is known when a list of traces ends.
+/// Results at the end of a list of traces.
 struct ListEnd {
   std::int64_t traces = 0;
   bool complete = false;
-  /// "complete", "stopped", ...: what is known of the traces that were not listed. Never
-  /// "complete" where `complete` is false.
+  /// "complete", "stopped", ...: the state of knowledge about the traces that were not listed.
+  /// Never "complete" where `complete` is false.
   std::string exploration;
-  std::string remark;  // what follows it in texts: ` (proof checked), 3 checked`
+  std::string remark;  // the text after it: ` (proof checked), 3 checked`
   std::string fields;  // the same as members of a JSON object, a comma behind each
 };
 
