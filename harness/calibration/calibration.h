@@ -39,7 +39,7 @@ struct CalibrationCell {
   std::int64_t loops = 0;
   std::int64_t false_claims = 0;  // loops in which something false was claimed
   double mean_runs = 0.0;
-  /// How often that may be in a share of the loops, by what is claimed; none: nothing says so.
+  /// The allowed share of loops, by what is claimed; none: nothing says so.
   std::optional<double> allowed;
 
   double share() const {
@@ -63,9 +63,9 @@ struct CalibrationOptions {
 std::vector<CalibratedCriterion> calibrated_criteria(double confidence_level, double epsilon);
 std::vector<CalibratedWorld> calibrated_worlds();
 
-/// In what share of the loops a false claim may be made, by what the claim says: 1-C, twice that
-/// where `clean-runs` may have to say so after a loss, and where each of two traces is claimed by
-/// itself.
+/// The share of loops in which a false claim is allowed, by the wording of the claim: 1-C, or twice
+/// that if `clean-runs` may have to say so after a loss, and if each of two traces is claimed by
+/// itself. None: the criterion is not judged.
 std::optional<double> allowed_share(const CalibratedCriterion& criterion,
                                     const CalibratedWorld& world);
 
@@ -83,7 +83,7 @@ base::Result<CalibrationCell> protocol_cell(const CalibratedCriterion& criterion
 /// Can a campaign be in that state? A number of traces that is not known takes more than two.
 bool has_campaign(const CalibratedWorld& world);
 
-/// What follows `CalibrationOptions::command`.
+/// The arguments that follow `CalibrationOptions::command`.
 std::vector<std::string> synthetic_arguments(const SyntheticSimulator::Options& options);
 
 struct CalibrationResult {

@@ -32,7 +32,7 @@ struct TraceLoop {
     Tally tally(
         {{"box.x"}, {cell}, {"box.x"}, {Interval{kSyntheticGoal_m, kSyntheticGoal_m + 1.0}}, {}});
     for (runs = 0; runs < most;) {
-      // What goes wrong is decided by one number, which both traces share where there are two.
+      // One number decides whether the run goes wrong; both traces share it where there are two.
       const CounterRng rng({.campaign_seed = campaign_seed,
                             .trace_key = static_cast<std::uint64_t>(world.kind),
                             .sample = static_cast<std::uint64_t>(++runs)});

@@ -10,8 +10,8 @@
 
 namespace parallax::harness {
 
-/// What decides whether a run of a synthetic simulator goes wrong, and how that shows. In all of
-/// them it does with a probability that is known exactly.
+/// The cause of failing runs in a synthetic simulator, and how a failure shows. Each kind fails
+/// with a probability that is known exactly.
 enum class SyntheticKind : std::uint8_t {
   kByStart,     // in a part of the start region
   kBySeed,      // by the seed that it is handed
@@ -32,7 +32,7 @@ std::optional<SyntheticKind> synthetic_kind(std::string_view word);
 /// Where a box lies at first [m], where `push-left` and `push-right` bring it to, and what else
 /// there is between them. A push that goes wrong leaves it where it is.
 inline constexpr double kSyntheticStart_m = 3.0, kSyntheticGoal_m = 0.0;
-/// Where the box comes to lie from a start, `x_m` of its cell's lower end.
+/// The end position of the box for a start, `x_m` of its cell's lower end.
 double synthetic_end_m(double x_m);
 
 /// One start region, one action, and a probability of going wrong.

@@ -227,7 +227,7 @@ class Campaign {
     return text + "the model may have other traces";
   }
 
-  /// What is claimed of all traces together.
+  /// States the claim about all traces together.
   void claim_family() {
     result_.spending = family_.rule();
     if (!result_.spending) return;

@@ -76,10 +76,10 @@ base::Result<CampaignResult> run_campaign(const Scenario& scenario, TraceFeed& t
 class LoopFeed;
 
 /// The same for a plan that is executed: one stream of samples, each an execution of the plan from
-/// any of the model's initial states (LoopSamples), held against all executions that the model has
+/// any of the model's initial states (LoopSamples), compared with all executions of the model
 /// (judge_path). It ends with the criterion, the first discrepancy, or the first execution that a
-/// limit ended: of what would have followed nothing can be said. Reports besides what kLoopStates
-/// and its neighbours say, before anything is simulated, and ends of executions that are errors.
+/// limit ended, as nothing can be said of its continuation. Also reports kLoopStates and its
+/// neighbours, before anything is simulated, and ends of executions that are errors.
 base::Result<CampaignResult> run_loop_campaign(const Scenario& scenario, LoopFeed& feed,
                                                const SimulatorFactory& make_simulator,
                                                const CampaignOptions& options,

@@ -34,12 +34,13 @@ struct DivergingFluent {
   bool observed = false;
 };
 
-/// What led a simulation away from its trace: the action that failed there, or else what changed.
+/// The reason why a simulation left its trace: the action that failed there, or else the fluents
+/// that changed.
 struct Cause {
   std::string text;  // "Go(bTable): navigation-pose-unreachable", "Go(bTable): not Holding(left,m)"
   std::string reason = {};                // in the simulator's words; empty where no action failed
-  std::string event = {};                 // behind which it left; empty: at the start
-  std::vector<std::string> fluents = {};  // that differed there
+  std::string event = {};                 // after which it left; empty: at the start
+  std::vector<std::string> fluents = {};  // fluents that differed there
 };
 
 /// How often one cause was the first to lead a simulation away from what was predicted.
@@ -55,7 +56,7 @@ struct CauseRate {
   std::string kind = {};                  // of the cause, where it was asked for
 };
 
-/// What the one repetition of a discrepancy showed before it was accepted.
+/// The result of repeating a discrepancy once before it was accepted.
 enum class Confirmation : std::uint8_t { kBitEqual, kDiffers, kLost };
 
 /// Does the simulation end otherwise than its trace, or did it just differ on the way?
@@ -63,7 +64,7 @@ enum class DiscrepancyKind : std::uint8_t { kLasting, kTransient };
 /// "lasting", "transient"
 std::string_view to_string(DiscrepancyKind kind);
 
-/// Where an executed plan left the paths of the model.
+/// The point where an executed plan left the paths of the model.
 struct PathDivergence {
   std::int64_t event = 0;   // number of the last one of the shortest prefix that cannot go on
   bool impossible = false;  // the model has no such event there
@@ -82,7 +83,7 @@ struct PathCount {
   std::int64_t example = 0;  // the first such sample
 };
 
-/// What is said of executions of a plan beside what is said of any stream of samples.
+/// The result of executing a plan, in addition to that of any stream of samples.
 struct LoopResult {
   std::int64_t initial_states = 0;
   bool has_weights = false;  // they are drawn by weights, else each is equally likely
@@ -152,8 +153,8 @@ struct TraceResult {
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
   std::vector<SampledDimension> start_region;  // the continuous states that it stands for
   std::vector<StartShare> start_shares;        // how much of their cells is drawn from
-  std::string left_out;                        // what of the region is never drawn; empty: nothing
-  std::optional<LawResult> law;                // none: starts are uniform
+  std::string left_out;          // the part of the region that is never drawn; empty: none
+  std::optional<LawResult> law;  // none: starts are uniform
   std::int64_t simulations = 0;  // run and not rejected before they began; lost ones included
   std::int64_t clean = 0;
   std::int64_t admitted = 0;  // of the clean ones: went otherwise, as the model admits
@@ -162,7 +163,7 @@ struct TraceResult {
   std::string first_of_the_solver;  // why the first of them was
   std::int64_t retried = 0;         // lost at first and observed at the second attempt
   std::int64_t rejected = 0;        // invalid starts that were drawn again
-  /// Of the clean ones: differed on the way, where only the end is compared.
+  /// Clean runs that differed on the way, where only the end is compared.
   std::int64_t strayed = 0;
   double certified_level = 0.0;    // C
   double certified_epsilon = 1.0;  // with confidence C, p is below this
@@ -177,7 +178,7 @@ struct TraceResult {
   std::vector<std::string> caveats;      // what weakens the claim, one sentence each
 };
 
-/// How much of one kind of thing in plan or model the simulations went through.
+/// Coverage of one kind of thing in plan or model by the simulations.
 struct CoverageShare {
   std::string group;  // "performs", "branches", "axioms", ...
   std::int64_t covered = 0;
@@ -206,7 +207,8 @@ struct CampaignResult {
   Execution execution = Execution::kOpenLoop;
   std::vector<ComparedFluents> compared;  // by symbol
   SimulatorInfo simulator;
-  /// What carries the hands of the built-in mobile robot; empty: there is none, or another's.
+  /// The construction of the built-in mobile robot: its arms and its base. Empty: there is no such
+  /// robot.
   std::string arms;
   std::string tool_version;
   std::string replay_folder;  // run folder as the user wrote it
@@ -215,7 +217,7 @@ struct CampaignResult {
   RepetitionResult repetition;  // of the first clean simulation
   std::shared_ptr<const SecondOpinion>
       second_opinion;                   // of another simulator; null: none was asked
-  std::vector<CoverageShare> coverage;  // of what there is; none: it was not looked at
+  std::vector<CoverageShare> coverage;  // shares of the items that exist; none: not measured
   std::int64_t simulations = 0;
   struct Timing {
     double wall_s = 0.0;

@@ -10,36 +10,36 @@
 
 namespace parallax::harness {
 
-/// Something that executions can show.
+/// An item that executions can show.
 struct CoverItem {
   std::string place;  // "two/plan.lisp:6"
   std::string what;   // "OpenDrawer(top) fails"
 };
 
-/// What executions are to show before a run ends by itself. It is settled before the first one, so
-/// that nothing that is seen decides what is looked for.
+/// The items that executions must show before a run ends by itself. They are fixed before the first
+/// execution, so that no observation decides what is looked for.
 class CoverWatch {
  public:
   virtual ~CoverWatch() = default;
-  /// What the model has executions with, or was not proved to have none with.
+  /// Items that some execution of the model shows, or for which the opposite was not proved.
   virtual const std::vector<CoverItem>& items() const = 0;
-  /// What stands in plan and model, and no execution of the model goes through.
+  /// Items of plan and model that no execution of the model goes through.
   virtual const std::vector<CoverItem>& unreachable() const = 0;
-  /// The items, by index, that an execution showed which came to a result. `admitted`: the model
-  /// has one like it.
+  /// Returns the indices of the items shown by an execution that came to a result. `admitted`: the
+  /// model has an execution like it.
   virtual std::vector<std::size_t> shown_by(const SampleRecord& record, bool admitted) = 0;
 };
 
-/// What became of the items.
+/// The items shown and left over, and the bound for those left.
 struct CoverResult {
   enum class End : std::uint8_t { kStopped, kShown, kRare, kRunLimit };
   End end = End::kStopped;  // why nothing more was looked for
   std::int64_t items = 0;
-  std::vector<CoverItem> left;         // that no execution showed
+  std::vector<CoverItem> left;         // not shown by any execution
   std::vector<CoverItem> unreachable;  // not among the items
-  std::int64_t drawn = 0, lost = 0;    // executions with a drawn start: seen, and not
-  /// With this confidence in all bounds together, each of those that are left comes in fewer of the
-  /// executions with a drawn start.
+  std::int64_t drawn = 0, lost = 0;    // executions with a drawn start: observed, and lost
+  /// An upper bound on the share of executions with a drawn start that show an item, for each item
+  /// that is left. The confidence is that of all these bounds together.
   double confidence = 0.0, bound = 1.0;
   double epsilon = 0.0;  // what was asked for
 };

@@ -52,7 +52,7 @@ class JournalReader {
     return {journal_.file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
   }
 
-  /// What is wrong with the line, if anything is.
+  /// Reads a line. Returns the fault of the line, or nothing if it is good.
   std::optional<std::string> take(std::string_view line) {
     if (!journal_.header) {
       auto decoded = decode_header(line);
@@ -168,7 +168,7 @@ std::vector<SampleKey> losses_to_repeat(const JournalText& journal, std::int64_t
   return out;
 }
 
-/// Takes records out of what was read, and gives the text of the lines that are left.
+/// Removes records from the journal text, and returns the text of the remaining lines.
 std::string without(const std::vector<SampleKey>& keys, JournalText& journal,
                     const base::SourceFiles& files) {
   std::vector<SourceRange> lines;

@@ -51,13 +51,13 @@ struct JournalText {
 };
 
 /// Reads RUN_DIR/journal.ndjson. A last line without its newline is dropped with kJournalTruncated;
-/// any other line that is none of ours is kForeignJournalLine; no file: kNoJournal.
+/// any other line that is not a journal line is kForeignJournalLine; no file: kNoJournal.
 base::Result<JournalText> read_journal(const std::filesystem::path& run_dir,
                                        base::SourceFiles& files, base::DiagnosticSink& sink);
 
-/// What the run in `folder` has recorded; empty where there is none. Reports what read_journal
-/// reports, and kJournalMismatch where `header` differs from the recorded one in anything but the
-/// simulator, which need not be known yet.
+/// Returns the recorded part of the run in `folder`; empty where there is no record. Reports what
+/// read_journal reports, and kJournalMismatch where `header` differs from the recorded one in
+/// anything but the simulator, which need not be known yet.
 base::Result<JournalText> read_for_continuation(const RunFolder& folder,
                                                 const JournalHeader& header,
                                                 base::SourceFiles& files,
@@ -80,19 +80,20 @@ class Journal {
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// What was there when it was opened, and what is still to be used of it.
+  /// The lines that were there when the journal was opened and are still to be used.
   const JournalText& recorded() const { return recorded_; }
-  /// Null if it was not there.
+  /// Returns null if the line was not there.
   const TraceLine* find(std::int64_t trace) const;
   const SampleRecord* find(std::int64_t trace, std::int64_t sample, DrawPhase phase) const;
 
   void append(const TraceLine& trace);
   void append(const SampleRecord& record);
-  /// Why a line could not be written; empty as long as all is well.
+  /// The reason why a line could not be written; empty as long as all is well.
   std::string write_error() const;
 
-  /// Replaces the file by header, traces and `consumed`, sorted by trace, sample and phase, so that
-  /// it no longer shows in which order simulations ended or what ran ahead in vain.
+  /// Replaces the file by header, traces and `consumed`, sorted by trace, sample and phase. It then
+  /// no longer shows the order in which simulations ended, nor those that ran ahead without being
+  /// used.
   base::Status rewrite(const std::vector<TraceLine>& traces, std::vector<SampleRecord> consumed,
                        base::DiagnosticSink& sink);
 

@@ -126,7 +126,7 @@ TraceLine trace_line_of(const Json& object, const std::shared_ptr<compiler::Symb
   return line;
 }
 
-/// What an executed plan did.
+/// Reads the path of an executed plan.
 ExecutedPath path_of(const Json& object) {
   ExecutedPath path;
   path.start = count_of(object, "start_state", 1);

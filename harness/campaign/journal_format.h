@@ -17,15 +17,15 @@
 
 namespace parallax::harness {
 
-/// What must be equal for a run to be continued or repeated, but for the name of the scenario, the
-/// folder it was started in and `max_runs`.
+/// The properties that must be equal for a run to be continued or repeated, except for the name of
+/// the scenario, the folder it was started in and `max_runs`.
 struct JournalHeader {
   std::string scenario;      // as the user wrote it
   std::string start_folder;  // where that path starts; empty in older journals
   std::string scenario_hash;
   std::uint64_t seed = 0;
   std::string tool_version;
-  SimulatorInfo simulator;    // without parameters and actions: the scenario was held against them
+  SimulatorInfo simulator;  // without parameters and actions: the scenario was checked against them
   std::string command_hash;   // over the files of its command; empty: built in, or an older journal
   std::int64_t max_runs = 0;  // of a trace; 0: as the criterion needs
   std::string options;        // canonical JSON of criterion, limits without max_runs, keep_going

@@ -80,7 +80,7 @@ Judgement judge(const StateMapping& mapping, const ModelFluents& fluents,
       const auto reading = mapping.read(fluent, observations[t], &out.missing);
       if (!reading) continue;  // ignored on purpose
       const bool predicted = runtime::contains(trace.points[t].holds, fluents.id(i));
-      // What is neither so nor so differs from both.
+      // A reading that is neither true nor false differs from both.
       const bool neither = *reading == Reading::kNeither;
       const bool observed = neither ? !predicted : *reading == Reading::kHolds;
       state.holds[fluents.id(i)] = observed;

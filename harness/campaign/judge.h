@@ -36,18 +36,18 @@ struct LoopState {
 LoopState loop_state(const StateMapping& mapping, const ModelFluents& fluents,
                      const State& observation, Moment moment, std::set<std::string>* missing);
 
-/// What the observations of one simulation say about the trace, on every fluent with a mapping: at
-/// every timepoint, or at the start and the last one where the mapping says so.
+/// The comparison of one simulation's observations with the trace, on every fluent with a mapping:
+/// at every timepoint, or at the start and the last one where the mapping says so.
 struct Judgement {
   std::optional<std::int64_t> first_divergence;  // timepoint
   std::vector<DivergingFluent> first;            // what differs there
-  /// Where the first of the fluents that differ at the end began to, and did not come back; none if
-  /// the last state agrees.
+  /// The timepoint from which on the first of the fluents that differ at the end differed for good.
+  /// None if the last state agrees.
   std::optional<std::int64_t> parted;
-  std::vector<DivergingFluent> at_parting;  // those that began to there
+  std::vector<DivergingFluent> at_parting;  // those that began to differ there
   std::vector<DivergingFluent> last;        // what differs at the last timepoint
   std::vector<ObservedState> states;        // by timepoint
-  std::set<std::string> missing;            // variables that the mapping asks for in vain
+  std::set<std::string> missing;  // variables that the mapping needs and the observations lack
   /// Where a simulation that does not match left its trace: at once, or for good where only the end
   /// is compared.
   std::int64_t left_at(Comparison comparison) const {
@@ -70,7 +70,7 @@ Cause cause_of(const CampaignTrace& trace, const Judgement& judgement, Compariso
 /// Number of the event behind which a judged simulation, which differs, left its trace; from 0.
 std::int64_t event_of(const Judgement& judgement, Comparison comparison);
 
-/// How each fluent symbol of the model is compared, sorted by symbol.
+/// The comparison of each fluent symbol of the model, sorted by symbol.
 std::vector<ComparedFluents> compared_fluents(const StateMapping& mapping,
                                               const std::vector<GroundFluent>& fluents,
                                               Comparison comparison);

@@ -166,7 +166,8 @@ class LoopCampaign {
   /// not depend on what is found, and rates are rates.
   std::int64_t planned() const { return std::min(limit_.needed, limit_.max_runs); }
 
-  /// Workers run ahead of what is consumed, but not beyond what the criterion still asks for.
+  /// The last sample to submit. Workers run ahead of the consumed samples, but not beyond what the
+  /// criterion still asks for.
   std::int64_t last_wanted(const Decision& decision) const {
     const std::int64_t window = options_.jobs == 1 ? 1 : 2 * options_.jobs;
     const auto guided = stream_.loop->guided.value_or(0);
@@ -176,7 +177,7 @@ class LoopCampaign {
     return std::min({samples_.next_sample() + window - 1, needed, limit_.max_runs + guided});
   }
 
-  /// What the sample ends, if anything.
+  /// Takes in one sample. Returns the end that it causes, if any.
   base::Result<std::optional<End>> consume(SampleRecord record) {
     const auto& start = samples_.start_of(record);
     if (record.status == SampleStatus::kRejected) {

@@ -11,7 +11,7 @@ namespace parallax::harness {
 /// Counts an execution among those that went the same way.
 void count_path(const SampleRecord& record, LoopResult& loop);
 
-/// Why the plan did not come to its end; empty if it did.
+/// The reason why the plan did not come to its end; empty if it did.
 std::string why_unfinished(const ExecutedPath& path, const Scenario& scenario);
 
 }  // namespace parallax::harness

@@ -46,7 +46,8 @@ class PlanExecution {
 class ExecutablePlan {
  public:
   virtual ~ExecutablePlan() = default;
-  /// Whatever the plan leaves open is drawn from the key's stream. The plan outlives the execution.
+  /// Begins an execution. Open choices of the plan are drawn from the key's stream. The plan
+  /// outlives the execution.
   virtual std::unique_ptr<PlanExecution> begin(const DrawKey& key) const = 0;
   /// Every perform that it can ask for, with each object that it can have found.
   virtual std::vector<PlannedPerform> performs() const = 0;
@@ -55,7 +56,7 @@ class ExecutablePlan {
 /// The states that executions begin in.
 struct LoopStates {
   std::vector<std::vector<compiler::FluentId>> holds;  // in a fixed order
-  /// As likely as their weights, none of which is 0; none: each equally likely.
+  /// Weights of the states in the draw, none of which is 0. Empty: each is equally likely.
   std::vector<double> weights;
 };
 
@@ -66,7 +67,7 @@ class LoopFeed {
 
   virtual ~LoopFeed() = default;
   virtual const ExecutablePlan& plan() const = 0;
-  /// Of the model's ground fluents and events.
+  /// The model's ground fluents and events.
   virtual runtime::Symbols symbols() const = 0;
   /// The performs of one execution that the model was compiled for.
   virtual std::int64_t max_performs() const = 0;
@@ -75,18 +76,18 @@ class LoopFeed {
   /// with the weights; nothing if it was stopped.
   virtual base::Result<std::optional<LoopStates>> initial_states(
       std::span<const compiler::FluentId> fluents) = 0;
-  /// Chooses where executions begin that are drawn from this seed; null: all are drawn. To be asked
-  /// for once, behind initial_states.
+  /// Returns the guide that chooses the starts of executions drawn from this seed; null: all are
+  /// drawn. Call it once, after initial_states.
   virtual StartGuide* guide(std::uint64_t seed) = 0;
-  /// What executions that are drawn from this seed are to show; null if the solver was stopped. To
-  /// be asked for once, behind initial_states.
+  /// Returns the items that executions drawn from this seed must show; null if the solver was
+  /// stopped. Call it once, after initial_states.
   virtual CoverWatch* cover(std::uint64_t seed) = 0;
   /// Has the model an execution that begins with these performs, goes through these states (from
   /// timepoint 0 on, perhaps not to the end), and ends the first `outcomes` of the performs as they
   /// ended? Undecided where the stop flag is raised meanwhile.
   virtual base::Known admits(std::span<const PathStep> performs, std::size_t outcomes,
                              std::span<const ObservedFluents> observed) = 0;
-  /// Reports an end that is an error, at what the binding table says of the perform.
+  /// Reports an end that is an error, at the perform's place in the binding table.
   virtual base::DiagnosticBuilder report_end(const ExecutedPath& path,
                                              const std::string& reason) = 0;
 };

@@ -65,7 +65,7 @@ class PathJudge {
     return ask(length, length, states_before(length + 1));
   }
 
-  /// What the model admits instead, where the first `length` events are too many.
+  /// Finds what the model admits instead, where the first `length` events are too many.
   LoopJudgement parted_after(std::size_t length) {
     auto& divergence = out_.divergence;
     divergence.event = static_cast<std::int64_t>(length) - 1;
@@ -75,7 +75,7 @@ class PathJudge {
       divergence.outcome = true;
       --outcomes;
       divergence.impossible = ask(length, outcomes, before) == Known::kNo;
-      // Then it is the state before that says what else there would be.
+      // In that case the state before tells what else there could be.
     }
     if (!divergence.impossible) note_fluents(length, outcomes, std::move(before));
     note_kind(length);

@@ -11,7 +11,7 @@
 namespace parallax::harness {
 namespace {
 
-// What takes the place of a trace's key in the draws of executions.
+// Names of random streams, used instead of a trace's key in the draws of executions.
 constexpr std::string_view kStartStream = "closed loop: start";
 constexpr std::string_view kStateStream = "closed loop: initial state";
 constexpr std::string_view kChoiceStream = "closed loop: choices of the plan";

@@ -20,7 +20,7 @@ namespace parallax::harness {
 /// each of `states` equally likely if there are none.
 std::int64_t drawn_state(std::uint64_t campaign_seed, std::int64_t sample, std::size_t states,
                          std::span<const double> weights);
-/// What takes the place of a trace's key where starts of executions are drawn.
+/// The stream key that replaces a trace's key when starts of executions are drawn.
 std::uint64_t loop_start_stream();
 
 /// An initial state of the model as executions begin in it.
@@ -29,7 +29,7 @@ struct LoopStart {
   Sampler sampler;
 };
 
-/// What bounds one execution of a plan, and what its open choices are drawn from.
+/// The limit of one execution of a plan, and the seed of its open choices.
 struct LoopBounds {
   std::uint64_t campaign_seed = 0;
   std::int64_t max_performs = 0;
@@ -68,12 +68,12 @@ class LoopSamples final : public SampleMaker {
   std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
                                      const std::function<bool()>& abandoned) const override;
 
-  /// What the plan leaves open in the sample is drawn from this key's stream.
+  /// The key of the random stream for the choices that the plan leaves open in the sample.
   static DrawKey choices_key(std::uint64_t campaign_seed, std::int64_t sample);
 
   const std::vector<LoopStart>& starts() const { return starts_; }
   const LoopStart& start_of(const SampleRecord& record) const;
-  /// As the wrong_draw of traces; also what wrong_path says.
+  /// The counterpart of wrong_draw of traces; also reports what wrong_path finds.
   std::string wrong_draw(const SampleRecord& record) const;
 
  private:

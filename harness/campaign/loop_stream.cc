@@ -11,8 +11,9 @@ namespace parallax::harness {
 
 namespace {
 
-/// What is chosen goes by all executions but the last ones before it, so that some can be simulated
-/// at the same time; how many may not depend on the number of workers.
+/// Number of executions whose starts are chosen ahead. A choice takes into account all executions
+/// but these last ones, so that some can be simulated at the same time. It must not depend on the
+/// number of workers.
 constexpr std::int64_t kChosenAhead = 4;
 
 }  // namespace

@@ -23,8 +23,8 @@ std::vector<compiler::FluentId> compared_fluents(const Scenario& scenario,
 base::Status check_performs(const Scenario& scenario, const ExecutablePlan& plan,
                             base::DiagnosticSink& sink);
 
-/// What Trial is for a trace: the executions of a plan, simulated by workers that may run ahead, or
-/// taken from the journal, in the order of their numbers.
+/// The counterpart of Trial for plans: executions of a plan in the order of their numbers,
+/// simulated by workers that may run ahead, or taken from the journal.
 class LoopStream {
  public:
   /// Everything outlives the object; `bench` has been started.
@@ -36,13 +36,14 @@ class LoopStream {
   static std::shared_ptr<const CampaignTrace> start_state(const LoopFeed& feed,
                                                           std::vector<compiler::FluentId> holds);
 
-  /// Before anything is simulated: every perform of the plan has a controller that takes what it
-  /// says, and every initial state has a start. False when stopped. Reports what these report.
+  /// Call it before anything is simulated. Checks that every perform of the plan has a controller
+  /// that takes its arguments, and that every initial state has a start. False when stopped.
+  /// Reports what these checks report.
   base::Result<bool> prepare();
   /// Reports kForeignJournalLine for a start that is not that of its number.
   base::Status continue_from(const Journal& journal);
 
-  /// How executions are made; behind `prepare`.
+  /// The maker of executions; valid after `prepare`.
   const std::shared_ptr<const LoopSamples>& samples() const { return samples_; }
   std::int64_t initial_states() const { return std::ssize(samples_->starts()); }
   bool has_weights() const { return has_weights_; }

@@ -8,10 +8,10 @@
 
 namespace parallax::harness {
 
-/// Between frames of a recording, where something moves.
+/// The interval between frames of a recording while something moves.
 inline constexpr double kRecordInterval_s = 0.05;
 
-/// What a simulation told of motion, besides what its record has.
+/// The motion that a simulation reported, in addition to its record.
 struct MotionLog {
   RecordedMotion motion;       // since the start
   std::vector<State> margins;  // by action

@@ -9,12 +9,12 @@
 
 namespace parallax::harness {
 
-/// How often one trace goes wrong, where that is too seldom to be counted.
+/// The rate at which one trace goes wrong, where that is too seldom to be counted.
 struct RareTraceRate {
   std::int64_t number = 0;
   std::string trace;     // its events
   std::string law;       // that starts are drawn by, as LawResult::text; empty: uniform
-  std::string left_out;  // what of the start region is never drawn
+  std::string left_out;  // the part of the start region that is never drawn
   RareEventResult estimate;
   std::vector<std::string> contradicting;  // parts of margins that were left out
 };
@@ -28,7 +28,7 @@ struct RareRatesResult {
   Comparison comparison = Comparison::kEveryStep;
   bool complete = true;  // false: stopped, or the simulator was lost too often
   std::vector<RareTraceRate> traces;
-  /// Every trace has its interval.
+  /// Does every trace have its interval?
   bool is_answered() const;
 };
 
@@ -41,7 +41,7 @@ base::Result<RareRatesResult> estimate_rare_rates(const Scenario& scenario, Trac
                                                   RareEventMethod method,
                                                   base::DiagnosticSink& sink);
 
-/// What is to be said where there is no interval; empty for kEstimated.
+/// Explains why there is no interval; empty for kEstimated.
 std::string why_unanswered(const RareTraceRate& rate, const RareRatesResult& result);
 
 }  // namespace parallax::harness

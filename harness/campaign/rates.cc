@@ -93,7 +93,7 @@ class Estimator {
     trial->end();
     rates.law = law.result();
     rates.left_out = law.drawn().left_out;
-    // Bounds that hold at any time need nothing of what was not made.
+    // Bounds that hold at any time do not depend on runs that were not made.
     rates.unseen = runs_are_fixed() && lost_too_often_ ? options_.runs - rates.runs : rates.lost;
     finish(rates, causes);
     return rates;
@@ -101,7 +101,8 @@ class Estimator {
 
   bool runs_are_fixed() const { return options_.until_width <= 0.0 && !options_.until_known; }
 
-  /// Workers run ahead of what is counted; where the count may end it, not far.
+  /// The last run to submit. Workers run ahead of the counted runs; where the count may end the
+  /// runs, only a little.
   std::int64_t last_wanted(std::int64_t next) const {
     if (runs_are_fixed()) return options_.runs;
     return std::min(options_.runs, next + 2 * options_.jobs - 1);

@@ -22,7 +22,7 @@ struct TraceRates {
   std::int64_t unseen = 0;
   std::int64_t rejected = 0;      // invalid starts that were drawn again
   std::optional<LawResult> law;   // none: starts are uniform
-  std::string left_out;           // what of the start region is never drawn
+  std::string left_out;           // the part of the start region that is never drawn
   CauseRate any;                  // any discrepancy at all
   std::vector<CauseRate> causes;  // most frequent first
 };
@@ -57,11 +57,11 @@ struct RatesResult {
   bool complete = true;  // false: stopped, or the simulator was lost too often
   std::vector<TraceRates> traces;
 
-  /// What the runs of a trace say of `until_known`.
+  /// Weighs the runs of a trace as evidence for or against `until_known`.
   Evidence evidence(const TraceRates& trace) const;
-  /// The runs ended before the interval was as narrow as asked.
+  /// Did the runs end before the interval was as narrow as asked?
   bool is_too_wide(const TraceRates& trace) const;
-  /// Every trace has what the runs were to go on for.
+  /// Does every trace have what the runs were to go on for?
   bool is_answered() const;
 };
 

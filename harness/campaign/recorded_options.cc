@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The members of an object of the header; the first that is none of ours is kept in `wrong`.
+/// The members of a header object. The first unknown member is kept in `wrong`.
 class Fields {
  public:
   Fields(const Json& object, std::string name, std::string& wrong)

@@ -15,8 +15,8 @@ namespace parallax::harness {
 struct CampaignOptions;
 struct Scenario;
 
-/// What a run was asked for beside its scenario, as the header of its journal says it. None: a
-/// journal that does not say it, as older ones.
+/// The options of a run besides its scenario, as the header of its journal records them. None: the
+/// journal does not record the option, as older ones do not.
 struct RecordedOptions {
   std::optional<CriterionKind> criterion;
   Family family = Family::kPerTrace;  // older journals know no other
@@ -36,9 +36,9 @@ struct RecordedOptions {
   void apply(Scenario& scenario, CampaignOptions& options) const;
 };
 
-/// The text of them.
+/// The options as the text that the header records.
 std::string recorded_options_json(const Scenario& scenario, const CampaignOptions& options);
-/// What the text says, or what is wrong with it: "`options.criterion` is no object".
+/// Parses that text, or says what is wrong with it: "`options.criterion` is no object".
 std::variant<RecordedOptions, std::string> recorded_options(std::string_view text);
 
 }  // namespace parallax::harness

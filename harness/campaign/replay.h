@@ -70,7 +70,7 @@ base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir
 /// simulator is made: what a changed scenario names as its simulator must not be started.
 std::string scenario_change(const JournalHeader& header, const std::string& scenario_hash);
 
-/// Why `simulator` is not the one of the run, or did not start; empty: it is.
+/// The reason why `simulator` is not the one of the run, or did not start; empty: it is.
 std::string simulator_change(const JournalHeader& header, const SimulatorInfo& simulator);
 
 /// Repeats one recorded simulation and compares every observation, every outcome and the digest

@@ -10,7 +10,7 @@ namespace parallax::harness {
 /// The criterion as one JSON object; journal and report say it in the same words.
 std::string criterion_json(const CriterionSpec& criterion);
 
-/// What holds at a timepoint, sorted: ["BoxIn(r2)", "RobotIn(r1)"].
+/// The fluents that hold at a timepoint, sorted: ["BoxIn(r2)", "RobotIn(r1)"].
 template <typename Json>
 Json holds_json(const CampaignTrace& trace, std::size_t t) {
   Json out = Json::array();

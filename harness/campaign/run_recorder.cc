@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kCleanKept = 3;
 
-/// What a writer that was killed leaves: the name of a recording, a number and ".tmp".
+/// Recognizes a file that a killed writer left: the name of a recording, a number and ".tmp".
 bool is_left_over(std::string_view name) {
   const auto end = name.find(".rec.");
   return end != std::string_view::npos && name.ends_with(".tmp") &&

@@ -19,13 +19,13 @@
 
 namespace parallax::harness {
 
-/// Of which simulations motion is kept. kDiscrepancies: of those, of executions that did not end,
-/// and of the first three clean ones of each trace.
+/// The simulations whose motion is kept. kDiscrepancies: discrepancies, executions that did not
+/// end, and the first three clean simulations of each trace.
 enum class RecordMode : std::uint8_t { kNone, kDiscrepancies, kAll };
 std::string_view to_string(RecordMode mode);  // "none", "discrepancies", "all"
 
-/// A simulation as it went; none if the simulator told nothing of motion. `events`: names of what
-/// was done. Where frames are not whole those before are kept.
+/// The recording of one simulation; none if the simulator reported no motion. `events`: names of
+/// the performed events. If a frame is incomplete, those before it are kept.
 std::optional<Recording> recording_of(const SimulatorInfo& simulator, const SampleRecord& record,
                                       const std::vector<std::string>& events, const MotionLog& log);
 
@@ -38,17 +38,18 @@ class RunRecorder {
   RunRecorder(RecordMode mode, std::filesystem::path run_dir)
       : mode_(mode), run_dir_(std::move(run_dir)) {}
 
-  /// For the worker pool; empty if nothing is recorded.
+  /// The function that the worker pool calls with motion; empty if nothing is recorded.
   std::function<void(const SampleRecord&, const MotionLog&)> taker();
-  /// Before anything is simulated.
+  /// Call it before anything is simulated.
   void set_simulator(const SimulatorInfo& simulator) { simulator_ = simulator; }
-  /// Before the first sample of a trace. Executed plans tell their events themselves.
+  /// Call it before the first sample of a trace. Executed plans tell their events themselves.
   void announce(std::int64_t trace, std::vector<std::string> events);
 
   enum class Verdict : std::uint8_t { kClean, kFinding, kNothing };
-  /// In order of the samples.
+  /// Call it in the order of the samples.
   void judge(const SampleRecord& record, Verdict verdict);
-  /// The run has come to its end, and the journal has these records: nothing else stays.
+  /// Ends the run. Deletes all recordings but the kept ones of these records, which the journal
+  /// has.
   void finish(const std::vector<SampleRecord>& consumed);
   /// Reports kRecordingLost.
   void report(base::DiagnosticSink& sink) const;

@@ -14,7 +14,7 @@
 
 namespace parallax::harness {
 
-// What runs have in common, whether they simulate traces or execute a plan.
+// Shared parts of runs that simulate traces and of runs that execute a plan.
 
 /// How many simulations a stream of samples may take, and how many the criterion asks for if all
 /// are clean.
@@ -32,8 +32,8 @@ struct ClaimedRun {
   RunFolder folder;
   JournalText recorded;
 };
-/// Before anything is simulated: claims the folder, reads what is to be continued, and warns of a
-/// limit that is too low. Reports what these report.
+/// Claims the folder before anything is simulated, reads what is to be continued, and warns of a
+/// limit that is too low. Reports what these steps report.
 base::Result<ClaimedRun> claim_run(const Scenario& scenario, const CampaignOptions& options,
                                    base::SourceFiles& files, base::DiagnosticSink& sink);
 
@@ -45,10 +45,10 @@ void describe_run(const Scenario& scenario, const CampaignOptions& options,
 base::Status check_written(const Journal& journal, const CampaignOptions& options,
                            base::DiagnosticSink& sink);
 
-/// What the repetition of a discrepancy showed.
+/// Compares a discrepancy with its repetition.
 Confirmation confirmation_of(const SampleRecord& record, const SampleRecord& again);
 
-/// What it took, once no worker simulates any more.
+/// Records the time taken. Call it when no worker simulates any more.
 void note_timing(const SimulatorBench& bench, std::chrono::steady_clock::time_point started,
                  CampaignResult& result);
 

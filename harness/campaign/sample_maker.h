@@ -23,14 +23,14 @@ class SampleMaker {
                                              const std::function<bool()>& abandoned) const = 0;
 };
 
-/// What is done next in a simulation.
+/// The source of the next actions in a simulation.
 class ActionSource {
  public:
   virtual ~ActionSource() = default;
   /// A simulation begins, perhaps not the first one.
   virtual void begin(SampleRecord& record) = 0;
-  /// The next action, after what `record` has of outcomes and observations; none: that was all.
-  /// What it points to lasts until the next call.
+  /// Returns the next action, given the outcomes and observations in `record`; null: there is no
+  /// further action. The pointer is valid until the next call.
   virtual const ActionCall* next(SampleRecord& record) = 0;
   /// All actions, where they are known before anything was seen; null: they are not.
   virtual const std::vector<ActionCall>* known() const { return nullptr; }
@@ -43,7 +43,7 @@ std::optional<SimStatus> simulate_start(ActionSource& actions, bool repeats_loss
                                         Simulator& simulator, SampleRecord& record,
                                         const std::function<bool()>& abandoned);
 
-/// What the record says of a simulation that ended so.
+/// The status of a sample whose simulation ended with `status`.
 SampleStatus sample_status(SimStatus status);
 
 }  // namespace parallax::harness

@@ -12,11 +12,11 @@
 namespace parallax::harness {
 namespace {
 
-constexpr int kScaleRuns = 8;  // of which the greatest value of a part is its unit
+constexpr int kScaleRuns = 8;  // the greatest value of a part in these runs is its unit
 constexpr double kTouching = 1e-9;
 constexpr double kUnmoved = 0.01;  // widths of a cell
 
-/// What controllers tell of where something was, not of how much was left.
+/// Margins that tell where something was, not how much was left.
 constexpr std::array<std::string_view, 2> kNoMargins = {"grasp_offset", "free_way"};
 
 void take_least(MarginParts& parts, const std::string& name, double value) {
@@ -43,7 +43,7 @@ MarginParts margin_parts(const StateMapping& mapping, const ModelFluents& fluent
       const bool predicted = runtime::contains(trace.points[t].holds, fluents.id(i));
       const auto margin = fluent_margin(mapping, fluent, predicted, record.observations[t]);
       if (!margin) continue;
-      // Of a body that still lies where it lay at the start the margin is about the start alone.
+      // The margin of a body that has not moved since the start is about the start alone.
       const auto before = fluent_margin(mapping, fluent, predicted, record.observations[0]);
       if (before && std::abs(*margin - *before) < kUnmoved) continue;
       take_least(parts, fluent.text, *margin);
@@ -89,7 +89,7 @@ std::optional<std::pair<std::string, double>> MarginScale::least(const MarginPar
 
 std::optional<double> MarginScale::margin_of(const MarginParts& parts, bool discrepancy) const {
   const auto part = least(parts);
-  // What a discrepancy shows in flags and words may leave every distance above zero.
+  // A discrepancy in flags or words may leave every distance above zero.
   if (discrepancy) return part ? std::min(part->second, -kTouching) : -1.0;
   if (!part) return std::nullopt;
   return std::max(part->second, kTouching);

@@ -16,7 +16,7 @@ namespace parallax::harness {
 enum class SampleStatus : std::uint8_t { kOk, kLost, kRejected, kRefused };
 std::string_view to_string(SampleStatus status);  // "ok", "lost", "rejected", "refused"
 
-/// What a controller was asked to do; `arguments` after the plan was laid over the binding.
+/// A call of a controller; `arguments` after the plan was laid over the binding.
 struct ActionCall {
   std::string controller;
   State arguments;
@@ -24,7 +24,7 @@ struct ActionCall {
   friend bool operator==(const ActionCall&, const ActionCall&) = default;
 };
 
-/// What became of one act.
+/// The outcome of one act.
 struct ActionOutcome {
   SimStatus status = SimStatus::kOk;
   std::string reason;
@@ -69,10 +69,10 @@ struct PathStep {
   friend bool operator==(const PathStep&, const PathStep&) = default;
 };
 
-/// What an executed plan did.
+/// The path of an executed plan.
 struct ExecutedPath {
   std::int64_t start = 0;  // number of the initial state, from 1
-  /// What the start was chosen for; empty: it was drawn.
+  /// The target that the start was chosen for; empty: it was drawn.
   std::string target;
   std::vector<PathStep> steps;
   PathEnd end = PathEnd::kDone;

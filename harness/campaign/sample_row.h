@@ -10,7 +10,7 @@
 
 namespace parallax::harness {
 
-/// What one simulation came to, as a row of a table. Repetitions of discrepancies have none.
+/// The result of one simulation as a row of a table. Repetitions of discrepancies have no row.
 struct SampleRow {
   std::int64_t trace = 0, sample = 0;
   std::uint64_t seed = 0;             // handed to the simulator at reset
@@ -18,7 +18,7 @@ struct SampleRow {
   std::int64_t retries = 0;           // attempts that were lost and made again
   bool drawn = true;                  // else the start was chosen for what it leads to
   const char* outcome = "clean";      // "clean", "admitted", "discrepancy", "unfinished", "lost"
-  std::optional<std::int64_t> event;  // behind which it left what is predicted; from 0
+  std::optional<std::int64_t> event;  // after which it left what is predicted; from 0
   std::string cause, reason;          // of a discrepancy; the reason of a loss, too
   double sim_time_s = 0.0;
   State start;
@@ -28,7 +28,7 @@ struct SampleRow {
 /// Called for each simulation in the order in which they count, in the caller's thread.
 using SampleListener = std::function<void(SampleRow)>;
 
-/// All but what was judged.
+/// The row of a simulation without its judgement.
 SampleRow sample_row(const SampleRecord& record, const char* outcome);
 
 }  // namespace parallax::harness

@@ -107,7 +107,7 @@ class CallList final : public ActionSource {
   std::size_t next_ = 0;
 };
 
-/// What the controller calls an argument of the plan; none if it is not taken.
+/// The controller's name for an argument of the plan; none if it is not taken.
 std::optional<std::string> taken_as(const ActionBinding& binding, const std::string& name) {
   if (!binding.from_plan) return name;
   for (const auto& [from, to] : *binding.from_plan) {
@@ -135,7 +135,8 @@ ActionCall call_for(const ActionBinding& binding, const Occurrence& at) {
   return call;
 }
 
-/// What the built-in simulator's controller would refuse. False if it was reported.
+/// Reports required arguments of the built-in simulator's controller that are missing. Returns
+/// false if it reported any.
 bool check_required(const ActionBinding& binding, const Occurrence& at, const ActionCall& call,
                     const ControllerSpec& controller, base::DiagnosticSink& sink) {
   const auto errors_before = sink.error_count();
@@ -395,7 +396,7 @@ base::Result<std::vector<ActionCall>> action_calls(const Scenario& scenario,
     }
     calls.push_back(call_for(*binding, at));
     const auto& call = calls.back();
-    // Another one was reported when the scenario was held against the simulator.
+    // Unknown controllers were reported when the scenario was checked against the simulator.
     const auto* controller = built_in ? find_controller(call.controller) : nullptr;
     if (controller == nullptr) continue;
     if (check_required(*binding, at, call, *controller, sink)) {

@@ -20,7 +20,7 @@ namespace parallax::harness {
 /// Makes the simulator of one worker. Called in the worker's thread, at most once a worker.
 using SimulatorFactory = std::function<std::unique_ptr<Simulator>()>;
 
-/// What a worker needs of a trace to simulate any sample of it; shared and never changed.
+/// The data of a trace that a worker needs to simulate any sample of it; shared and never changed.
 struct TracePlan {
   std::shared_ptr<const CampaignTrace> trace;
   std::vector<ActionCall> calls;  // per event
@@ -74,7 +74,7 @@ std::optional<SampleRecord> repeat_sample(const std::vector<ActionCall>& calls, 
                                           const SampleRecord& record, Simulator& simulator,
                                           const std::function<bool()>& abandoned);
 
-/// What carries out one event of the scenario's actions; none if no action is of that event.
+/// The controller call for one event of the scenario's actions; none if no action is of that event.
 std::optional<ActionCall> call_of(const Scenario& scenario, const GroundFluent& event,
                                   const State& planned);
 

@@ -54,7 +54,7 @@ class SearchPhase {
     std::int64_t sample = 0;
   };
 
-  /// With the margins as they are taken by now.
+  /// The points tried so far, with their margins in the current scale.
   SearchHistory history() const {
     SearchHistory out(cube_.dimensions());
     for (const auto& tried : tried_) {

@@ -15,7 +15,7 @@ enum class SearchEnd : std::uint8_t { kNothing, kDiscrepancy, kLostTooOften, kSt
 struct SearchOutcome {
   SearchEnd end = SearchEnd::kNothing;
   SearchResult result;
-  /// What was simulated, in order, the discrepancy last.
+  /// The simulated samples, in order, the discrepancy last.
   std::vector<TrialSample> samples;
 };
 
@@ -34,7 +34,7 @@ class UnitCube {
   std::size_t free_ = 0;
 };
 
-/// Of what is random in a search of the trace's starts.
+/// The seed for the random choices in a search of the trace's starts.
 std::uint64_t search_seed(const TracePlan& plan);
 EvaluationKind evaluation_kind(const TrialSample& sample);
 

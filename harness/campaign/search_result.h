@@ -9,14 +9,14 @@
 
 namespace parallax::harness {
 
-/// What a search before the certification came to.
+/// The result of a search before the certification.
 struct SearchResult {
   SearchSpec spec;
   std::int64_t runs = 0;     // simulated, lost ones included
   std::int64_t invalid = 0;  // points that were no valid starts
   std::int64_t lost = 0;
-  /// The sample that came nearest to a discrepancy, and how near: in units of what is usual for the
-  /// part of the margin that says so. None: no margin changed.
+  /// The sample that came nearest to a discrepancy, and its margin in units of the usual value of
+  /// the deciding part. None: no margin changed.
   std::optional<std::int64_t> nearest;
   double margin = 0.0;
   std::string part;  // "BoxIn(r1)"

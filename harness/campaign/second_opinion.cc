@@ -45,7 +45,7 @@ class StartsAgain final : public SampleMaker {
   Make make_;
 };
 
-/// What came of one question.
+/// The answer to one question.
 struct Verdict {
   Answer answer = Answer::kNone;
   std::string words;

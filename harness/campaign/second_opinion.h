@@ -14,8 +14,8 @@
 
 namespace parallax::harness {
 
-/// What another simulator made of the start of one simulation: the same verdict, the other one, or
-/// none, because it was lost or does not take the start.
+/// The verdict of another simulator on the start of one simulation: the same verdict, the other
+/// one, or none, because it was lost or does not take the start.
 enum class Answer : std::uint8_t { kClean, kDiscrepancy, kNone };
 /// "clean", "discrepancy", "none"
 std::string_view to_string(Answer answer);

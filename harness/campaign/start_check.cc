@@ -28,7 +28,7 @@ std::vector<std::string> quoted_names(const std::string& text) {
   return names;
 }
 
-/// What regions call the body: all parts of the robot are `robot`.
+/// The name of a body in regions: all parts of the robot are `robot`.
 std::string name_in_mapping(const WorldSpec& world, const std::string& body) {
   const auto base = base_body(world);
   if (base.empty() || body == base) return body == base ? "robot" : body;

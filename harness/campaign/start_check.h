@@ -9,9 +9,9 @@
 
 namespace parallax::harness {
 
-/// Reports that so many starts of a sample in a row were invalid: at the region where the first of
-/// the bodies that `reason` names in backquotes is put, else at the body, with a note at the other
-/// one; at `sampling` if it names none of the scenario.
+/// Reports that `rejected` starts of a sample in a row were invalid: at the region of the first
+/// body that `reason` names in backquotes, else at the body, with a note at the other one; at
+/// `sampling` if it names no body of the scenario.
 base::DiagnosticBuilder report_rejected(const Scenario& scenario, const CampaignTrace& trace,
                                         std::int64_t rejected, std::int64_t sample,
                                         const std::string& reason, base::DiagnosticSink& sink);

@@ -18,9 +18,10 @@ struct GuidedStart {
 class StartGuide {
  public:
   virtual ~StartGuide() = default;
-  /// For the execution of this number, each asked for once, in order. None: its state is drawn.
+  /// Chooses the start of the execution with this number. Called once for each, in order. None: its
+  /// state is drawn.
   virtual std::optional<GuidedStart> next(std::int64_t sample) = 0;
-  /// What came of an execution, in order of their numbers.
+  /// Reports the result of an execution, in order of their numbers.
   virtual void tell(const SampleRecord& record) = 0;
 };
 

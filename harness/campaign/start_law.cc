@@ -15,7 +15,7 @@ double LawResult::refused_share() const {
 }
 
 std::string LawResult::text() const {
-  // Of executions each initial state may have entries of its own.
+  // With executions, each initial state may have entries of its own.
   constexpr std::size_t kMost = 12;
   if (words.size() <= kMost) return fmt::format("{}", fmt::join(words, "; "));
   const auto end = words.begin() + kMost;

@@ -23,7 +23,7 @@ struct LawResult {
   std::int64_t refused = 0;        // candidates
   std::vector<Condition> conditions;
 
-  /// Of all candidates.
+  /// The share of all candidates that was refused.
   double refused_share() const;
   /// "box.mass normal with mean 1 and sd 0.05; given box.x < 1"
   std::string text() const;
@@ -46,7 +46,7 @@ class LawCounter {
   void name(const Sampler& sampler);
   /// None: all starts are uniform in their cuboids.
   const std::optional<LawResult>& result() const { return result_; }
-  /// How all starts are drawn, for a claim about them.
+  /// The law of all starts, for a claim about them.
   DrawnStarts drawn() const { return {result_ ? result_->text() : std::string(), left_out_}; }
 
  private:

@@ -94,7 +94,8 @@ class TraceCampaign {
     return true;
   }
 
-  /// Workers run ahead of what is consumed, but not beyond what the criterion still asks for.
+  /// The last sample to submit. Workers run ahead of the consumed samples, but not beyond what the
+  /// criterion still asks for.
   std::int64_t last_wanted() const {
     const std::int64_t jobs = context_.options.jobs;
     const std::int64_t window = jobs == 1 ? 1 : 2 * jobs;
@@ -103,7 +104,8 @@ class TraceCampaign {
     return std::min({next + window - 1, needed, max_runs_});
   }
 
-  /// What the search ends, if anything. No simulation of it is counted.
+  /// Searches for a discrepancy. Returns the end that it causes, if any. None of its simulations is
+  /// counted.
   base::Result<std::optional<TraceEnd>> search() {
     auto searched = search_trace(trial_, context_.scenario.search, context_.scenario,
                                  context_.bench.fluents(), context_.sink);
@@ -125,7 +127,7 @@ class TraceCampaign {
     return std::optional<TraceEnd>();
   }
 
-  /// What the sample ends, if anything.
+  /// Takes in one sample. Returns the end that it causes, if any.
   std::optional<TraceEnd> consume(TrialSample sample) {
     auto& result = outcome_.result;
     tally_.add_rejected(sample.record.rejected);
@@ -226,7 +228,7 @@ class TraceCampaign {
 
   TraceOutcome finished(TraceEnd end) {
     trial_.end();
-    // Of a discrepancy that ends the run nothing is claimed that others would have to share.
+    // A discrepancy that ends the run makes no claim, so other traces need not share the error.
     const bool is_last = end == TraceEnd::kDiscrepancy && !context_.options.keep_going;
     if (!(is_last && trace().number == 1) && end != TraceEnd::kStopped) (void)share_error();
     if (!is_shared_ && end == TraceEnd::kStopped) is_alone_ = true;

@@ -27,7 +27,7 @@ struct TraceOutcome {
   std::optional<CleanSample> first_clean;
 };
 
-/// What all traces of a campaign share.
+/// The data that all traces of a campaign share.
 struct TraceContext {
   const Scenario& scenario;
   const CampaignOptions& options;

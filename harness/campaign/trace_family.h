@@ -26,13 +26,14 @@ class TraceFamily {
   TraceFamily(TraceFeed& feed, Family family, std::int64_t max_traces, base::DiagnosticSink& sink)
       : feed_(feed), family_(family), max_traces_(max_traces), sink_(sink) {}
 
-  /// As the feed gives it. What an error on the way ahead reported fails only when it comes to it.
+  /// Returns the next trace of the feed. An error that was met while looking ahead is returned only
+  /// when its turn comes.
   base::Result<std::optional<CampaignTrace>> next();
 
-  /// Of the trace that was given last; 1 where each trace is claimed by itself. None: the search
-  /// was stopped before that could be told.
+  /// The share of the error for the trace that was given last; 1 where each trace is claimed by
+  /// itself. None: the search was stopped before the share was known.
   std::optional<double> share();
-  /// Is it known, or nobody can tell? Then it costs nothing to ask.
+  /// Is the share known, or can nobody tell it? Then asking costs nothing.
   bool is_settled() const { return family_ == Family::kPerTrace || looked_; }
   /// How the error is shared. None: not asked for, not known, or each trace is claimed by itself.
   const std::optional<SpendingRule>& rule() const { return rule_; }

@@ -15,10 +15,10 @@
 
 namespace parallax::harness {
 
-/// What the plan says of one event of a trace.
+/// The plan's data for one event of a trace.
 struct PlannedEvent {
   std::string source;  // "fetch.lisp:4"; empty without a plan
-  State arguments;     // laid over the action's own: target.x, target.y, ...
+  State arguments;     // override the action's own: target.x, target.y, ...
 };
 
 /// A trace as the campaign simulates, records and reports it: exactly one event leads from each
@@ -30,7 +30,7 @@ struct CampaignTrace : runtime::Trace {
   std::size_t event_count() const { return plan.size(); }
   /// Printed without blanks: "Go(r2)".
   const std::string& event(std::size_t t) const { return symbols->name(points[t].happens.front()); }
-  /// All of them: "Go(r2) PickUp()".
+  /// All events: "Go(r2) PickUp()".
   std::string events() const {
     std::string out;
     for (std::size_t t = 0; t < event_count(); ++t) out += (t == 0 ? "" : " ") + event(t);
@@ -50,18 +50,18 @@ class ModelFluents {
   std::vector<compiler::FluentId> ids_;  // likewise
 };
 
-/// Where traces come from: an enumeration, a file, a list in a test.
+/// A source of traces: an enumeration, a file, a list in a test.
 class TraceFeed {
  public:
   virtual ~TraceFeed() = default;
   /// The next trace, or none when there is no further one.
   virtual base::Result<std::optional<CampaignTrace>> next() = 0;
-  /// What may be said when `next` has answered none: "all traces explored", "complete up to
-  /// bound" or "stopped".
+  /// The completeness of the search once `next` has returned none: "all traces explored", "complete
+  /// up to bound" or "stopped".
   virtual std::string exploration() const = 0;
   /// Why it is complete up to a bound only, one sentence each: the forms of the plan that were cut.
   virtual std::vector<std::string> bounds() const { return {}; }
-  /// Of all its traces: the ground fluents and events of the model.
+  /// The ground fluents and events of the model, for all its traces.
   virtual runtime::Symbols symbols() const = 0;
   /// Does the model let the events of `trace`, from its initial state, lead through states in which
   /// each of these fluents, by timepoint, has this value? Asked about a trace that was given,

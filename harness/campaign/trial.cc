@@ -307,8 +307,8 @@ TrialSample Trial::lost(SampleRecord record) {
 
 namespace {
 
-/// What the model is asked to admit, by timepoint; none where a compared state is one that no
-/// state of a model stands for.
+/// The states that the model is asked to admit, by timepoint. None if a compared state is not a
+/// state of any model.
 std::optional<std::vector<std::map<compiler::FluentId, bool>>> compared_states(
     const Judgement& judgement, Comparison comparison) {
   std::vector<std::map<compiler::FluentId, bool>> out(judgement.states.size());
@@ -374,7 +374,8 @@ base::DiagnosticBuilder Trial::report_refused(const SampleRecord& record) const 
       fmt::format("refused `{}` {}", event.text, in), record.reason);
 }
 
-/// A record of the journal is at fault itself: what the simulator shows by now is not known.
+/// Reports a missing variable. A record of the journal is itself at fault: the current simulator is
+/// not consulted.
 base::DiagnosticBuilder Trial::report_missing(const SampleRecord& record,
                                               const std::string& variable) const {
   const auto& scenario = bench_->scenario_;

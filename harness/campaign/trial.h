@@ -24,32 +24,33 @@ struct TrialOptions {
   std::uint64_t seed = 1;
   std::int64_t jobs = 1;
   const std::atomic<bool>* stop = nullptr;
-  /// Of the worker pool.
+  /// Called in the worker's thread with the recorded motion of each sample.
   std::function<void(const SampleRecord&, const MotionLog&)> moved = {};
 };
 
-/// What a trace is simulated with.
+/// The data that a trace is simulated with.
 struct PreparedTrace {
   StartCuboid start;
   std::vector<ActionCall> calls;
   Sampler sampler;
 };
-/// Derives it. Reports what the parts report, and kVariableNotSettable for a start that the
+/// Derives the data. Reports what the parts report, and kVariableNotSettable for a start that the
 /// simulator cannot be put into.
 base::Result<PreparedTrace> prepare_trace(const Scenario& scenario,
                                           const std::vector<GroundFluent>& fluents,
                                           const SimulatorInfo& simulator,
                                           const CampaignTrace& trace, base::DiagnosticSink& sink);
 
-/// What draws the starts of an initial state. Reports what the mapping and the sampler report.
+/// Makes the sampler for the starts of an initial state. Reports what the mapping and the sampler
+/// report.
 base::Result<Sampler> start_sampler(const Scenario& scenario,
                                     const std::vector<GroundFluent>& fluents,
                                     const std::set<std::string>& true_at_start,
                                     base::DiagnosticSink& sink);
 
-/// What the simulations of one command share: workers with a simulator each, what that says of
-/// itself, the model's fluents, and the count of losses in a row, which goes on from trace to
-/// trace.
+/// The shared state of the simulations of one command: workers with a simulator each, the info of
+/// that simulator, the model's fluents, and the count of consecutive losses, which goes on from
+/// trace to trace.
 class SimulatorBench {
  public:
   /// Begins to make the first simulator. `finished` is called in a worker's thread for each
@@ -123,7 +124,7 @@ enum class SampleVerdict : std::uint8_t {
 struct TrialSample {
   SampleRecord record;
   SampleVerdict verdict = SampleVerdict::kLost;
-  Judgement judgement;  // of what was observed; of a lost one nothing is said
+  Judgement judgement;  // of the observations; unset for a lost sample
 };
 
 /// Does the model let the events of the trace lead through the compared states? Of a simulation
@@ -131,7 +132,7 @@ struct TrialSample {
 base::Known admitted_by_model(const Scenario& scenario, TraceFeed& feed, const CampaignTrace& trace,
                               const Judgement& judgement);
 
-/// As a row of a table; `cause` of a discrepancy, else null.
+/// The sample as a row of a table; `cause` is that of a discrepancy, else null.
 SampleRow judged_row(const TrialSample& sample, Comparison comparison, const Cause* cause);
 
 /// The one loop that samples, taken apart: a trace is prepared, its samples are simulated by
@@ -168,11 +169,11 @@ class Trial {
   /// initial state than it was put into (kStartNotTaken of an external one, else
   /// kMappingNotInverse), and for starts that are always invalid (kStartsRejected).
   base::Result<std::optional<TrialSample>> next();
-  /// Simulates starts that were chosen, as the samples from number `first` on. They are no draws,
-  /// and nothing is claimed from them. One whose start was invalid, or is none, has the status
-  /// kRejected and the verdict kLost. The last one is kLostTooOften where the rest was not
-  /// simulated for it. None when stopped; reports what `next` reports, and
-  /// kForeignJournalLine where the journal has another start under the number.
+  /// Simulates chosen starts, as the samples from number `first` on. They are not draws, and no
+  /// claim rests on them. A start that is invalid or missing has the status kRejected and the
+  /// verdict kLost. The last one is kLostTooOften where the rest was not simulated for it. None
+  /// when stopped; reports what `next` reports, and kForeignJournalLine where the journal has
+  /// another start under the number.
   base::Result<std::optional<std::vector<TrialSample>>> try_starts(
       std::int64_t first, std::vector<std::optional<State>> starts);
   /// The samples up to this number were chosen ones: draws come after them.

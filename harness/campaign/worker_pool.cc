@@ -10,8 +10,8 @@ namespace {
 
 constexpr auto kStopSlice = std::chrono::milliseconds(50);  // how late the stop flag may be seen
 
-// A simulation is also given to somebody else when it has taken so much longer than others did on
-// average. A run is rarely that long by itself; the second worker had nothing to do.
+// A simulation is also given to a second worker once it has taken this many times the average. A
+// run is rarely that long by itself, and the second worker had nothing to do.
 constexpr double kStragglerFactor = 2.0;
 constexpr std::chrono::duration<double> kStragglerLeast{0.1};
 
@@ -239,8 +239,8 @@ void WorkerPool::put_back(const Job& job) {
   changed_.notify_all();
 }
 
-/// Is it the first result of this simulation? Nobody else's counts then. A loss is none while
-/// somebody else is at it.
+/// Is it the first result of this simulation? Later ones do not count, nor does a loss while
+/// another worker is still at it.
 bool WorkerPool::claim(const Job& job, SampleStatus status, Clock::duration took) {
   const std::lock_guard lock(mutex_);
   if (status == SampleStatus::kLost && job.flight->copies > 1) {

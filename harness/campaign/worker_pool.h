@@ -43,7 +43,7 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
-  /// Of the first worker's simulator. None when stopped.
+  /// The info of the first worker's simulator. None when stopped.
   std::optional<SimulatorInfo> info();
 
   void submit(std::shared_ptr<const SampleMaker> maker, std::int64_t sample);
@@ -63,7 +63,7 @@ class WorkerPool {
  private:
   using Key = std::pair<std::int64_t, DrawPhase>;
   using Clock = std::chrono::steady_clock;
-  /// What workers that are at the same simulation share.
+  /// The state shared by workers that run the same simulation.
   struct Flight {
     std::atomic<bool> done = false;
     std::int64_t copies = 0, assignments = 0;  // under the lock

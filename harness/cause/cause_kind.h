@@ -10,7 +10,7 @@
 
 namespace parallax::harness {
 
-/// What kind of thing makes simulations of one trace fail in one way.
+/// The kind of cause that makes simulations of one trace fail in one way.
 enum class CauseKind : std::uint8_t {
   kUnknown,    // the runs do not tell
   kAlways,     // every run fails: an axiom is wrong
@@ -21,13 +21,14 @@ enum class CauseKind : std::uint8_t {
 /// "unknown", "always", "region", "random", "simulator"
 std::string_view to_string(CauseKind kind);
 
-/// How often it happens again from one failing start.
+/// Counts of repetitions from one failing start, and of those that failed again.
 struct Persistence {
   std::int64_t runs = 0, failures = 0;
   bool in_most() const { return 2 * failures >= runs; }
 };
 
-/// Where a failing start, moved along one parameter, stops failing: both values were simulated.
+/// The border where a failing start, moved along one parameter, stops failing: both values were
+/// simulated.
 struct CauseBorder {
   std::string parameter;
   double fails = 0.0, other = 0.0;
@@ -39,9 +40,9 @@ struct CauseFinding {
   /// Starts, equal to the last bit, from which some runs fail and others do not.
   std::int64_t contradictory_starts = 0;
   std::optional<FailureRule> rule;
-  /// From a failing start, with other seeds of the simulator, and with half its step.
+  /// Persistence of a failing start with other seeds of the simulator, and with half its step.
   std::optional<Persistence> other_seeds, half_step;
-  /// Of a failing start that was moved: each of these, alone, ends it.
+  /// The borders found by moving a failing start. Each of these, alone, ends the failure.
   std::vector<CauseBorder> borders;
 };
 
@@ -63,7 +64,8 @@ void weigh_borders(const std::vector<CauseBorder>& borders, const std::vector<Ca
 std::string rule_text(const std::vector<Border>& borders,
                       const std::vector<std::string>& parameters);
 
-/// What was found, with the counts behind it, in one or two sentences; contradictory runs first.
+/// Describes the finding, with the counts behind it, in one or two sentences; contradictory runs
+/// first.
 std::string cause_words(const CauseFinding& finding, const std::vector<std::string>& parameters);
 
 }  // namespace parallax::harness

@@ -169,12 +169,12 @@ class TreeSearch {
   bool failed(std::size_t i) const { return failed_ == nullptr ? runs_[i].failed : (*failed_)[i]; }
 
   const std::vector<CauseRun>& runs_;
-  const std::vector<bool>* failed_ = nullptr;  // instead of what the runs say
+  const std::vector<bool>* failed_ = nullptr;  // replaces the outcomes of the runs
   Weights weights_;
   std::vector<std::vector<std::size_t>> orders_;  // by parameter: runs by its value
 };
 
-/// What trees foretell of runs that they were not made from.
+/// The predictions of trees for runs that they were not made from.
 struct Foretold {
   std::int64_t failed_right = 0, failed_wrong = 0, clean_right = 0, clean_wrong = 0;
 

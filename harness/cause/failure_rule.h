@@ -51,8 +51,8 @@ struct FailureRule {
   std::vector<Border> borders;  // one or two
   std::int64_t failures_inside = 0, failures = 0;
   std::int64_t clean_inside = 0, clean = 0;
-  /// Of the tree on runs it was not made from (ten parts, each left out once): the mean of the
-  /// shares of failed and of clean runs that it foretells.
+  /// The cross-validated accuracy of the tree (ten parts, each left out once): the mean of the
+  /// shares of failed and of clean runs that it predicts correctly.
   double accuracy = 0.0;
   /// The borders are those of a failing start that was moved; no accuracy is known.
   bool by_moving = false;

@@ -119,7 +119,7 @@ class Shrinker {
   /// moved since.
   bool move_each() {
     std::int64_t moves = 0;
-    std::vector<std::int64_t> tried_behind(cell_.size(), -1);  // so many moves
+    std::vector<std::int64_t> tried_behind(cell_.size(), -1);  // `moves` at the last attempt
     for (bool any = true; any;) {
       any = false;
       for (std::size_t p = 0; p < cell_.size(); ++p) {

@@ -10,7 +10,7 @@
 
 namespace parallax::harness {
 
-/// What a simulation from a start says of a discrepancy.
+/// The result of a simulation from a start, with respect to a discrepancy.
 enum class StartVerdict : std::uint8_t {
   kFails,      // it happens there, too
   kClean,      // the simulation gets past it as the model says
@@ -57,7 +57,7 @@ struct BorderBracket {
 /// probe ended before.
 bool narrow(std::vector<BorderBracket>& brackets, const StartPoint& base, const StartProbe& probe);
 
-/// What a parameter of a failing start has to do with its failing.
+/// The role of a parameter in the failure of a start.
 enum class ParameterRole : std::uint8_t {
   kOpen,         // not asked: the probe ended before
   kIndifferent,  // in the middle of the cell it fails as well

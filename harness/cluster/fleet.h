@@ -43,7 +43,7 @@ class Fleet : public std::enable_shared_from_this<Fleet> {
   bool report(base::DiagnosticSink& sink,
               const std::function<void(const std::string&)>& remark) const;
 
-  // What follows is for the simulators.
+  // The remaining members are for the simulators.
 
   using Slot = std::size_t;
   const FleetOptions& options() const { return options_; }

@@ -6,14 +6,14 @@
 
 namespace parallax::harness {
 
-/// Which program it is: two of the same give the same runs.
+/// The identity of a program: two programs with the same identity give the same runs.
 struct ProgramIdentity {
   std::string version;  // "0.2.0"
   std::string build;  // tells builds apart, those of the libraries that are loaded with it as well
   friend bool operator==(const ProgramIdentity&, const ProgramIdentity&) = default;
 };
 
-/// Of this process.
+/// The identity of this process.
 ProgramIdentity this_program(std::string version);
 
 /// "0.2.0 (build 5f2c...)".

@@ -14,11 +14,11 @@
 
 namespace parallax::harness {
 
-/// A slot is given up after so many attempts in a row to start a worker there.
+/// The number of failed attempts in a row to start a worker after which a slot is given up.
 inline constexpr std::int64_t kMostStarts = 3;
-/// Likewise after so many workers in a row that were lost before they finished one simulation.
-/// Where a lost simulation is made again elsewhere, it may be a simulation that ends its workers:
-/// more of them than are made of one simulation (kMostAssignments of the pool).
+/// Likewise for workers in a row that were lost before they finished one simulation. Where a lost
+/// simulation is made again elsewhere, the simulation itself may end its workers. The limit is then
+/// above the number of assignments of one simulation (kMostAssignments of the pool).
 inline constexpr std::int64_t kMostLosses = 5, kMostLossesWithRepeats = 20;
 
 /// A simulator that a worker of this program serves, started through the prefix of a slot. A worker

@@ -10,7 +10,7 @@
 
 namespace parallax::harness {
 
-/// Where workers can be started: by a command that theirs is put behind.
+/// A place where workers can be started: the prefix of their command.
 struct WorkerPlace {
   std::vector<std::string> prefix;  // "ssh", "lab3"
   std::string text;                 // as it was written, for people

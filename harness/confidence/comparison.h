@@ -8,7 +8,7 @@
 
 namespace parallax::harness {
 
-/// At which timepoints the observed fluents are held against those of the trace.
+/// The timepoints at which the observed fluents are compared with those of the trace.
 enum class Comparison : std::uint8_t {
   kEveryStep,  // at the first difference prediction and physics part, wherever the run ends
   kFinal,      // at the last timepoint only, as in the paper of Meywerk et al.
@@ -19,8 +19,8 @@ constexpr std::string_view to_string(Comparison comparison) {
   return kComparisons[static_cast<std::size_t>(comparison)];
 }
 
-/// What is simulated: the events of the model's traces one after the other, whatever comes of them,
-/// or the plan itself, which goes on as it does on the robot.
+/// The object of the simulation: the events of the model's traces one after the other, whatever
+/// comes of them, or the plan itself, which goes on as it does on the robot.
 enum class Execution : std::uint8_t { kOpenLoop, kClosedLoop };
 inline constexpr std::array<std::string_view, 2> kExecutions = {"open-loop", "closed-loop"};
 constexpr std::string_view to_string(Execution execution) {
@@ -35,7 +35,7 @@ constexpr std::string_view to_string(Starts starts) {
   return kStartsWords[static_cast<std::size_t>(starts)];
 }
 
-/// How the fluents of one symbol are compared.
+/// The comparison of the fluents of one symbol.
 struct ComparedFluents {
   enum class How : std::uint8_t { kEveryStep, kAtTheEnd, kAtTheStart, kIgnored };
   std::string fluent;  // "Holding(..)", "Tired()"

@@ -35,7 +35,7 @@ std::string rejected_text(const Tally& tally) {
       tally.rejected(), drawn, percent_about(share));
 }
 
-/// What no criterion goes on after.
+/// Has a run given a discrepancy? No criterion goes on after that.
 bool is_refuted(const Tally& tally, Decision& decision) {
   if (tally.mismatch() == 0) return false;
   decision.why = "a run gave a discrepancy";

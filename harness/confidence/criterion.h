@@ -15,11 +15,11 @@
 
 namespace parallax::harness {
 
-/// What a criterion makes of the runs so far.
+/// The decision of a criterion after the runs so far.
 struct Decision {
   bool stop = false;                        // enough clean runs: no discrepancy found
   std::string why;                          // "90 clean runs of 90 needed", "paper's rule: ..."
-  std::optional<std::int64_t> runs_needed;  // total, as far as it can be told without new failures
+  std::optional<std::int64_t> runs_needed;  // total, as far as it is known without new failures
   std::optional<PaperVerdict> paper;        // of the criterion `paper`
 };
 
@@ -98,11 +98,12 @@ class PaperCriterion final : public ConfidenceCriterion {
 /// of all traces together.
 CertifiedBound certified_bound(const Tally& tally, double confidence_level, double share = 1.0);
 
-/// What the criterion itself states of these runs: of `anytime` the mixture's bound at C, of
-/// `clopper-pearson` its bound at C once all its runs were made. Else the certified bound.
+/// The bound that the criterion itself states for these runs: for `anytime` the mixture's bound at
+/// C, for `clopper-pearson` its bound at C once all its runs were made. Otherwise the certified
+/// bound.
 CertifiedBound stated_bound(const Tally& tally, const CriterionSpec& spec);
 
-/// How starts are drawn, in words.
+/// The law by which starts are drawn, in words.
 struct DrawnStarts {
   std::string law{};  // where they are not drawn uniformly
   /// The part of the region that is never drawn: "its rim (`inset_m`: 0.05)". Empty: none.
@@ -115,7 +116,7 @@ struct DrawnStarts {
 /// up, so never beyond the evidence.
 std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,
                   const DrawnStarts& drawn = {});
-/// "drawn uniformly from the start region", or by which law, and from what of it.
+/// "drawn uniformly from the start region", or the law and the drawn part of the region.
 std::string drawn_from(std::string_view region, const DrawnStarts& drawn);
 /// The supposition of every claim about how often runs go wrong, which ends its sentence.
 inline constexpr std::string_view kSupposition = ", supposing that no run affects another";
@@ -132,9 +133,8 @@ struct StartLaw {
 std::string loop_claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,
                        const StartLaw& starts);
 
-/// What weakens the claim, one sentence each: rejected starts, lost runs, fluents without
-/// regression evidence where the paper's rule is satisfied, which it is after `paper_stopped_at`
-/// runs, if at all.
+/// The caveats of the claim, one sentence each: rejected starts, lost runs, and fluents without
+/// regression evidence if the paper's rule was satisfied after `paper_stopped_at` runs.
 std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec,
                                  std::optional<std::int64_t> paper_stopped_at);
 

@@ -12,16 +12,16 @@ enum class CriterionKind : std::uint8_t {
   kCleanRuns,       // stop after ceil(ln(1-C) / ln(1-eps)) clean, independent, uniform runs
   kPaper,           // Meywerk et al., Section III-C
   kAnytime,         // stop when the mixture's bound is below eps, whatever failed before
-  kClopperPearson,  // so many runs, fixed in advance; then one look
+  kClopperPearson,  // a number of runs fixed in advance; then one look
 };
-/// As they are typed and recorded, by value.
+/// The words that are typed and recorded, by value.
 inline constexpr std::array<std::string_view, 4> kCriterionWords = {"clean-runs", "paper",
                                                                     "anytime", "clopper-pearson"};
 inline std::string_view to_string(CriterionKind kind) {
   return kCriterionWords[static_cast<std::size_t>(kind)];
 }
 
-/// Where it comes from: "Hanley and Lippman-Hand 1983: ...".
+/// The source of the criterion: "Hanley and Lippman-Hand 1983: ...".
 std::string_view source_of(CriterionKind kind);
 /// May one look after every run without spoiling what is stated?
 bool may_be_watched(CriterionKind kind);
@@ -50,7 +50,7 @@ PaperRuleSpec paper_literal();
 /// exempt, tolerance 1 cm}.
 PaperRuleSpec paper_repaired();
 
-/// Of what the claims of several traces hold with confidence C.
+/// The claims that hold with confidence C: that of each trace by itself, or those of all traces.
 enum class Family : std::uint8_t {
   kPerTrace,   // each by itself
   kAllTraces,  // all of them together: each trace may spend a share of the error 1-C

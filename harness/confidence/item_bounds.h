@@ -6,16 +6,16 @@
 
 namespace parallax::harness {
 
-/// What independent runs say of things that a run shows or does not show, of which there are a
-/// number that was fixed before the first run: how rare those are that none has shown. May be
-/// looked at after every run, and whatever was seen may end the runs.
+/// Bounds how often a run shows an item, for the items that no run has shown yet. The number of
+/// items is fixed before the first run, and the runs are independent. The bounds may be read after
+/// every run, and any observation may end the runs.
 ///
-/// Each has the bound of CleanRunsCriterion with the share (1-C) / items of the error. The bound of
-/// one that a run shows with probability p is false at some time only if the first n(p) runs do not
-/// show it, n(p) being the first count whose bound is below p, which has probability at most
-/// (1-C) / items. So all bounds hold together, at all times, with probability C (Bonferroni), and
-/// no rule of stopping can choose a moment at which they do not. A run that was lost may have shown
-/// anything: it counts as having shown everything, and the bounds are those of the mixture.
+/// Each item has the bound of CleanRunsCriterion with the share (1-C) / items of the error. The
+/// bound of an item that a run shows with probability p is false at some time only if the first
+/// n(p) runs do not show it, n(p) being the first count whose bound is below p, which has
+/// probability at most (1-C) / items. So all bounds hold together, at all times, with probability C
+/// (Bonferroni), and no stopping rule can choose a moment at which they do not. A lost run may have
+/// shown anything: it counts as having shown everything, and the bounds are those of the mixture.
 class ItemBounds {
  public:
   /// `items` at least 1; `confidence_level` and `epsilon` in (0, 1).
@@ -27,11 +27,11 @@ class ItemBounds {
   std::int64_t items() const { return items_; }
   std::int64_t runs() const { return runs_; }  // without lost ones
   std::int64_t lost() const { return lost_; }
-  /// Of each that no run has shown; the confidence is that of all bounds together.
+  /// The bound for each item that no run has shown; the confidence is that of all bounds together.
   CertifiedBound bound() const;
   /// Is it at most epsilon?
   bool is_rare() const;
-  /// All runs after which it is if no further one is lost.
+  /// The total number of runs after which the bound is at most epsilon if no further run is lost.
   std::int64_t runs_needed() const;
 
  private:

@@ -241,11 +241,11 @@ class PaperFit {
   RunningRegression regression_;      // of all final parameters on those
   std::int64_t runs_ = 0;
   bool starts_finite_ = true;
-  /// Of each final parameter, the initial one that it has been equal to so far.
+  /// For each final parameter, the initial one that it has been equal to so far.
   std::vector<std::optional<std::size_t>> inherited_from_;
-  std::vector<bool> is_finite_;        // of each final parameter, so far
-  std::vector<double> shift_;          // of each of them
-  std::vector<Interval> range_;        // of each of them, shifted
+  std::vector<bool> is_finite_;        // by final parameter, so far
+  std::vector<double> shift_;          // by final parameter
+  std::vector<Interval> range_;        // by final parameter, shifted
   std::vector<std::size_t> outcomes_;  // tested final parameters
 };
 

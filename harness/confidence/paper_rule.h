@@ -24,7 +24,7 @@ struct RegressionInput {
   std::vector<std::string> x_names, y_names;    // may be empty: x1.., y1..
 };
 
-/// What the regression says of one final parameter.
+/// The regression result for one final parameter.
 struct ParameterInterval {
   std::string name;
   std::vector<double> coefficients;  // (n); 0 for an initial parameter of zero width

@@ -6,7 +6,8 @@ namespace parallax::harness {
 
 /// Standard normal distribution function.
 double normal_cdf(double z);
-/// Its inverse for p in (0, 1): Wichura 1988, algorithm AS 241 (PPND16), and one Newton step.
+/// The inverse of normal_cdf for p in (0, 1): Wichura 1988, algorithm AS 241 (PPND16), and one
+/// Newton step.
 double normal_quantile(double p);
 
 /// Regularized incomplete beta function I_x(a, b) for a, b > 0 and x in [0, 1], by Lentz's
@@ -22,7 +23,7 @@ double beta_quantile(double p, double a, double b);
 
 /// Student's t with `degrees_of_freedom` > 0.
 double student_t_cdf(double t, double degrees_of_freedom);
-/// Its inverse for p in (0, 1).
+/// The inverse of student_t_cdf for p in (0, 1).
 double student_t_quantile(double p, double degrees_of_freedom);
 
 }  // namespace parallax::harness

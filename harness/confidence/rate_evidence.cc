@@ -25,7 +25,7 @@ double at_least(std::int64_t k, std::int64_t n, double p) {
   return incomplete_beta(static_cast<double>(k), static_cast<double>(n - k) + 1.0, p);
 }
 
-/// Do so many failures show that the rate is below the bound?
+/// Does this number of failures show that the rate is below the bound?
 bool shows_below(std::int64_t failures, const RateCounts& of, double bound, double tail) {
   if (bound >= 1.0) return true;
   return of.fixed ? at_most(failures, of.runs, bound) <= tail

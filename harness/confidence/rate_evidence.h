@@ -6,7 +6,7 @@
 
 namespace parallax::harness {
 
-/// That a probability lies from `lower` to `upper`; 0 below and 1 above bound nothing.
+/// The claim that a probability lies from `lower` to `upper`; 0 below and 1 above bound nothing.
 struct RateClaim {
   double lower = 0.0, upper = 1.0;
   double confidence_level = 0.95;  // in (0, 1)
@@ -17,12 +17,12 @@ struct RateClaim {
 /// "below 5 %", "above 30 %", "from 10 to 30 %"
 std::string to_string(const RateClaim& claim);
 
-/// What a number of independent runs came to.
+/// The counts of a number of independent runs.
 struct RateCounts {
   std::int64_t runs = 0;      // lost ones as well
   std::int64_t failures = 0;  // that were observed
-  std::int64_t lost = 0;      // may have failed or not: the worst is assumed, for either answer
-  bool fixed = true;          // their number was in advance; else it may depend on what they showed
+  std::int64_t lost = 0;      // taken in the worst case, for either answer
+  bool fixed = true;          // was `runs` fixed in advance? Else it may depend on the results
 };
 
 enum class Evidence : std::uint8_t {
@@ -31,18 +31,18 @@ enum class Evidence : std::uint8_t {
   kTooLittle,  // neither can be said with this confidence
 };
 
-/// What the counts say of the claim, by exact binomial tests, or by bounds that hold whenever one
-/// looks (mixture_upper) where their number was not fixed: where it is false they are taken for
-/// support, and where it is true for refutation, with a probability of at most 1 - C each. Support
-/// takes the bounds of both sides at C, which is enough for both together (an
-/// intersection-union test); refutation takes one of them, at 1 - (1-C)/2 where there are two.
+/// Weighs the counts as evidence for the claim, by exact binomial tests, or by bounds that hold at
+/// any time (mixture_upper) if the number of runs was not fixed. The probability of support for a
+/// false claim, and of refutation of a true one, is at most 1 - C each. Support takes the bounds of
+/// both sides at C, which is enough for both together (an intersection-union test); refutation
+/// takes one of them, at 1 - (1-C)/2 where there are two.
 Evidence weigh(const RateClaim& claim, const RateCounts& counts);
 
-/// Can so many runs support the claim, whatever they come to? With `fixed` false: can it be
-/// supported by so many, or earlier?
+/// Can this number of runs support the claim, whatever their results? With `fixed` false: can it be
+/// supported by this number or earlier?
 bool can_support(const RateClaim& claim, std::int64_t runs, bool fixed = true);
 
-/// A number of runs that can, while one less cannot; none up to `most`.
+/// The least number of runs that can support the claim; none up to `most`.
 std::optional<std::int64_t> runs_to_support(const RateClaim& claim, std::int64_t most,
                                             bool fixed = true);
 

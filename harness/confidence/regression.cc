@@ -80,7 +80,7 @@ std::optional<LinearFit> RunningRegression::fit(Eigen::Index outcome) const {
   fit.coefficients = with_intercept_ ? b.tail(columns_ - 1) : b;
   fit.intercept = with_intercept_ ? b(0) : 0.0;
   fit.has_intercept = with_intercept_;
-  // What of the outcome is not in the space of D.
+  // The part of the outcome outside the column space of D.
   fit.sse = triangle_.col(column).segment(columns_, outcome + 1).squaredNorm();
   fit.runs = runs_;
   fit.parameters = columns_;

@@ -22,7 +22,7 @@ class SpendingRule {
   /// known, and the k-th may spend 6/(pi^2 k^2), which sums to 1 over all k.
   explicit SpendingRule(std::optional<std::int64_t> traces) : traces_(traces) {}
 
-  /// Of the error, for the k-th trace, from 1 on.
+  /// The share of the error for the k-th trace, from 1 on.
   double share(std::int64_t k) const;
   const std::optional<std::int64_t>& traces() const { return traces_; }
   /// "1/3 of the error for each of 3 traces"

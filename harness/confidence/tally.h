@@ -12,7 +12,7 @@
 
 namespace parallax::harness {
 
-/// What the regression of the paper's rule is about: continuous parameters only.
+/// The parameters of the regression of the paper's rule: continuous ones only.
 struct RegressionFrame {
   std::vector<std::string> x_names;             // (n) initial parameters, sorted
   std::vector<Interval> x_range;                // (n) where they were drawn from [m, rad]

@@ -313,7 +313,7 @@ ArmSpec read_arm(const YamlEntry& entry, base::DiagnosticSink& sink) {
   fields.text(Key::kNearPadBody, arm.near_pad_body);
   fields.text(Key::kFarPadBody, arm.far_pad_body);
   if (is_chain) {
-    // What follows from the joints is filled in when all of them are read.
+    // Values that follow from the joints are filled in when all joints have been read.
     arm.carry_B.setConstant(std::numeric_limits<double>::quiet_NaN());
   } else {
     fields.require(Key::kShoulderM);

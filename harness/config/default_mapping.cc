@@ -25,7 +25,7 @@ Signature signature_of(const GroundFluent& ground) {
   return {ground.symbol, ground.arguments.size()};
 }
 
-/// Variables of a model are true or false: numbers and texts are asked for in vain.
+/// Reports ranges and `equals`: variables of a model are true or false, not numbers or texts.
 void check_condition(const FluentBinding& binding, base::DiagnosticSink& sink) {
   const bool range = std::holds_alternative<RangeBinding>(binding.condition);
   if (!range && !std::holds_alternative<EqualsBinding>(binding.condition)) return;
@@ -35,7 +35,7 @@ void check_condition(const FluentBinding& binding, base::DiagnosticSink& sink) {
       fmt::format("`{}` or `{}`: what a model shows is true or false", Key::kFlag, Key::kIgnored));
 }
 
-/// What stands for each fluent of the model that the scenario says nothing of.
+/// Binds each fluent of the model that the scenario does not map.
 void bind_fluents(Scenario& scenario, const std::vector<std::string>& fluents,
                   const std::set<Signature>& known, base::DiagnosticSink& sink) {
   auto bindings = scenario.mapping->bindings();

@@ -1,4 +1,4 @@
-// What a scenario expects of itself, and whether that can be met at all.
+// Reads the expectations of a scenario, and checks that they can be met at all.
 
 #include <fmt/format.h>
 

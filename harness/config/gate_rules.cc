@@ -49,7 +49,7 @@ class RuleSection {
   }
   void forbids() { forbids_ = true; }
 
-  /// A section that forbids nothing is none.
+  /// Reports a section that forbids nothing.
   void finish() const {
     if (forbids_ || sink_.error_count() != before_) return;
     sink_.error(codes::kCaseExpectsNothing, fields_.node().range, key_);

@@ -9,11 +9,11 @@
 
 namespace parallax::harness {
 
-/// What a newer revision must not do to an older one. Without a section nothing is said of such
-/// revisions; what a section does not forbid is allowed.
+/// The changes that a newer revision must not make to an older one. Without a section nothing is
+/// said of such revisions; a change that a section does not forbid is allowed.
 struct GateRules {
-  /// A rule about what a scenario says beside model and plan. The ordered ones admit a change to
-  /// the one side: a longer horizon, narrower regions, a criterion that asks for more.
+  /// A rule about the settings of a scenario besides model and plan. The ordered demands admit a
+  /// change in one direction: a longer horizon, narrower regions, a criterion that asks for more.
   enum class Demand : std::uint8_t { kForbidden, kNotShorter, kNotWider, kNotWeaker };
   struct SettingRule {
     std::string name;  // "settings" (all but words), an effect ("physics") or a section ("world")

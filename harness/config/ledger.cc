@@ -35,7 +35,7 @@ bool read_status(const YamlNode& node, LedgerEntry& entry, base::DiagnosticSink&
   return false;
 }
 
-/// What an entry is known again by, and what it tells.
+/// Reads the fields by which an entry is recognized, and those that describe it.
 void read_fields(const YamlFields& fields, LedgerEntry& entry) {
   fields.text(Key::kOutcome, entry.outcome);
   const auto list = [&](std::string_view key, std::optional<std::vector<std::string>>& into) {

@@ -44,16 +44,15 @@ struct Ledger {
   const LedgerEntry* find(std::string_view id) const;
 };
 
-/// Reads a ledger. Ids are distinct; unknown keys, a status that is none of the three and an entry
-/// without a decision where there has to be one are refused where they stand.
+/// Reads a ledger. Ids are distinct. Refuses, at their places, unknown keys, a status other than
+/// the three, and an entry without a decision that is required.
 base::Result<Ledger> load_ledger(const std::filesystem::path& path, base::SourceFiles& files,
                                  base::DiagnosticSink& sink);
-/// The same of a text that is not yet a file.
+/// Reads the same from a text that is not yet a file.
 base::Result<Ledger> parse_ledger(base::FileId file, base::SourceFiles& files,
                                   base::DiagnosticSink& sink);
 
-/// The name that a scenario has in a ledger: the way there from the ledger's folder, links
-/// resolved.
+/// The name of a scenario in a ledger: its path relative to the ledger's folder, links resolved.
 std::string ledger_name(const std::filesystem::path& scenario, const std::filesystem::path& ledger);
 
 }  // namespace parallax::harness

@@ -86,7 +86,7 @@ std::vector<StartWeight> read_start_weights(const YamlNode& node, base::Diagnost
 
 SearchSpec read_search(const YamlNode& node, base::DiagnosticSink& sink) {
   SearchSpec search;
-  // A number alone stands for so many runs of the default strategy.
+  // A number alone means that number of runs of the default strategy.
   const YamlNode map = with_key(node, Key::kRuns);
   YamlFields fields(map, key_text(Key::kSearch), sink);
   fields.only({Key::kRuns, Key::kStrategy});
@@ -130,7 +130,7 @@ CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink) {
 
 namespace {
 
-/// What a simulator in a process of its own may take.
+/// Reads the time and memory limits of a simulator in a process of its own.
 void read_process_limits(YamlFields& fields, SimulatorSpec& simulator) {
   fields.number(Key::kHelloTimeoutS, kTimeout, simulator.hello_timeout_s);
   fields.number(Key::kResetTimeoutS, kTimeout, simulator.reset_timeout_s);
@@ -142,7 +142,8 @@ void read_process_limits(YamlFields& fields, SimulatorSpec& simulator) {
   fields.integer(Key::kMemoryMb, 0, 10'000'000, simulator.memory_mb);
 }
 
-/// Its name; reports one that is none, or that this program is without.
+/// Reads the engine's name; reports an unknown name, or an engine that this program is built
+/// without.
 void read_engine(const YamlNode& node, std::string_view key, const char* known_as,
                  SimulatorSpec& simulator, base::DiagnosticSink& sink) {
   std::vector<std::string> known;

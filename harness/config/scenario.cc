@@ -31,7 +31,7 @@ void check_supported_starts(const Scenario& scenario, base::DiagnosticSink& sink
   for (const Region& region : scenario.mapping->regions().regions()) {
     const auto& bottom = region.start[static_cast<std::size_t>(RegionAxis::kBottom)];
     auto x = at(region, RegionAxis::kX), y = at(region, RegionAxis::kY);
-    // The middle of a ring is none of its points.
+    // The middle of a ring is not in the ring.
     if (const auto& shape = region.start_area ? region.start_area : region.area) {
       if (const auto point = shape->at(0.0, 0.5)) x = (*point)[0], y = (*point)[1];
     }
@@ -64,7 +64,7 @@ void check_supported_regions(const Scenario& scenario, base::DiagnosticSink& sin
   }
 }
 
-/// What a region bounds, or where its starts are drawn, as a box; none if a side is open.
+/// The box that a region bounds, or in which its starts are drawn; none if a side is open.
 std::optional<NamedBox> box_of(const Region& region, bool start) {
   const auto on = [&](RegionAxis axis) {
     const auto& narrow = region.start[static_cast<std::size_t>(axis)];
@@ -211,7 +211,7 @@ class ScenarioReader {
     } else {
       scenario.simulator.source = fields_.node().range;
     }
-    // What a simulator needs is not asked for where it is not known which one it is.
+    // If the kind of simulator is not known, nothing that it needs is asked for.
     const bool unknown = sink_.error_count() != errors_before;
     for (auto& model : scenario.simulator.models) resolve(model, false);
     // Another simulator has a world of its own; the built-in one needs ours.
@@ -236,7 +236,7 @@ class ScenarioReader {
         }
       }
     }
-    // What has names in a world that is a model needs no words of the scenario.
+    // In a discrete world the names of the model suffice; the scenario need not give any.
     by_name_ = unknown || !scenario.simulator.models.empty();
     scenario.actions_source = scenario.simulator.source;
     if (const auto* node = needed(Key::kActions)) {
@@ -305,10 +305,10 @@ class ScenarioReader {
     return path;
   }
 
-  /// Makes a path start where its file lies, and says at the key when nothing is there.
+  /// Resolves a path relative to its file, and reports at the key if nothing is there.
   void resolve(LocatedText& path, bool or_folder) {
     const auto resolved = path_beside(path.source, path.text, files_);
-    // Of what lies outside it is not told either whether it exists.
+    // For a path outside the gate, not even its existence is told.
     if (gate_.check(resolved, path.source, sink_)) {
       (void)base::check_file(resolved, path.source, sink_, or_folder);
     }
@@ -366,7 +366,7 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
   for (const auto& model : scenario.simulator.models) files.note_input(model.text);
   for (const auto& plan : scenario.plan) note_plan(plan.text, files);
   if (scenario.bind) files.note_input(scenario.bind->text);
-  // Of another simulator it is known when it has been started.
+  // Another simulator's variables are known only after it has been started.
   const bool built_in = scenario.simulator.is_built_in();
   if (built_in && scenario.mapping && sink.error_count() == errors_before) {
     const auto parameters = observables(scenario.world);

@@ -17,7 +17,7 @@
 
 namespace parallax::harness {
 
-/// Of a scenario or a manifest, and of each file that it includes.
+/// The size limit of a scenario or a manifest, and of each file that it includes.
 inline constexpr std::size_t kMaxScenarioBytes = std::size_t{1} << 20U;
 
 /// A text of the scenario with its place, for messages and for parsing elsewhere.
@@ -26,7 +26,7 @@ struct LocatedText {
   base::SourceRange source;
 };
 
-/// How likely executions begin in the states in which a formula holds.
+/// The weight of starts in which a formula holds, for executions of a plan.
 struct StartWeight {
   LocatedText when;
   double weight = 1.0;
@@ -74,22 +74,22 @@ struct Limits {
   std::int64_t max_traces = 0;             // 0: all
   std::int64_t max_rejected_starts = 100;  // in a row, for one sample
   std::int64_t max_lost_in_a_row = 3;
-  /// Of one execution of the plan in closed loop: performs (0: as many as its longest path has, at
-  /// most 50) and simulated seconds.
+  /// Limits of one execution of the plan in closed loop: performs (0: as many as its longest path
+  /// has, at most 50) and simulated seconds.
   std::int64_t max_performs = 0;
   double max_simulated_s = 3600.0;
 };
 
-/// What the discrepancies of a case must come of; what is empty is not compared.
+/// The expected cause of the discrepancies of a case; empty fields are not compared.
 struct CauseExpectation {
-  std::string event;   // behind which they part from the model: "Place(r1)"
+  std::string event;   // after which they leave the model: "Place(r1)"
   std::string fluent;  // among those that differ there: "BoxIn(r1)"
   std::string reason;  // of an action that failed, in the simulator's word
   std::string kind;    // as `parallax explain` tells it: "always", "region", ...
   base::SourceRange source, event_source, fluent_source;
 };
 
-/// How often uniform runs of one trace give any discrepancy (`parallax rates`).
+/// The expected rate of discrepancies of any kind in uniform runs of one trace (`parallax rates`).
 struct RateExpectation {
   std::int64_t trace = 1, runs = 100;
   bool fixed_runs = true;  // false: `runs` are the most, and end as soon as they tell
@@ -100,7 +100,7 @@ struct RateExpectation {
   std::optional<CauseExpectation> cause;  // of each discrepancy
 };
 
-/// What `parallax suite` and the tests hold the result against.
+/// The expected result that `parallax suite` and the tests compare with.
 struct Expectation {
   std::optional<std::string> verdict;
   std::optional<std::int64_t> iterations;
@@ -146,7 +146,7 @@ struct Scenario {
   double sampling_inset_m = 1e-6;  // [m, rad] how far draws stay inside their cuboid
   base::SourceRange regions_source, mapping_source, actions_source, sampling_source;
   std::map<std::string, base::SourceRange> sampled_sources;  // of the variables there
-  /// Where the sampling of a variable is written, or would be.
+  /// The place where the sampling of a variable is written, or would be.
   const base::SourceRange& sampled_at(const std::string& variable) const {
     const auto found = sampled_sources.find(variable);
     return found == sampled_sources.end() ? sampling_source : found->second;
@@ -212,10 +212,10 @@ bool leads_to_stop(const Scenario& scenario, const std::string& event);
 void check_stops(const Scenario& scenario, const std::vector<CausedFluent>& caused,
                  base::DiagnosticSink& sink);
 
-/// For a world that is a model (`info`): fluents without a mapping become the fluents of the same
-/// name there, or are ignored where it has none; events without an action become the event of the
-/// same name. Reports kSimulatorLacksEvent and kUnknownController for ground events that the world
-/// does not have.
+/// Binds fluents and events by name in a discrete world (`info`): fluents without a mapping become
+/// the fluents of the same name there, or are ignored where it has none; events without an action
+/// become the event of the same name. Reports kSimulatorLacksEvent and kUnknownController for
+/// ground events that the world does not have.
 base::Status bind_by_name(Scenario& scenario, const std::vector<std::string>& fluents,
                           const std::vector<std::string>& events, const SimulatorInfo& info,
                           base::DiagnosticSink& sink);

@@ -49,7 +49,7 @@ void check_event(const Scenario& scenario, const GroundFluent& event, base::Diag
   }
 }
 
-/// What a suite waits for must be something that can diverge.
+/// Checks that everything a suite waits for can diverge.
 void check_expected_names(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
                           const std::vector<std::string>& events, base::DiagnosticSink& sink) {
   if (!scenario.expect) return;
@@ -103,7 +103,8 @@ class NameChecker {
   NameChecker(const Scenario& scenario, base::DiagnosticSink& sink)
       : scenario_(scenario), layout_(lay_out(scenario.world)), sink_(sink) {}
 
-  /// `event` is none for what is the same in all events.
+  /// Checks the names in arguments that depend on the event; without `event`, those in arguments
+  /// that are the same for all events.
   void check(const ActionBinding& action, const GroundFluent* event) {
     const auto* controller = find_controller(action.controller);
     if (controller == nullptr) return;  // reported when it was read
@@ -265,8 +266,8 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
 
 namespace {
 
-/// What the scenario gives a controller of a simulator that tells what it takes. What the plan
-/// gives is known when it acts.
+/// Checks the scenario's arguments for a controller, if the simulator tells what it takes.
+/// Arguments from the plan are known when it acts.
 void check_arguments(const ActionBinding& action, const SimulatorInfo& info,
                      base::DiagnosticSink& sink) {
   const auto told = info.arguments.find(action.controller);

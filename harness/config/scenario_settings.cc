@@ -206,7 +206,8 @@ class SettingsReader {
     if (path.size() == 1 && path[0] == Key::kSimulator && entry.key == Key::kModel) {
       return put(entry.value, at, "a model", nullptr);
     }
-    // Why a fluent is not compared is words, that it is not compared is none.
+    // The reason why a fluent is not compared is prose; the fact that it is not compared is a
+    // setting.
     if (path.size() == 2 && path[0] == Key::kMapping && entry.key == Key::kIgnored) {
       (void)put(entry.value, path, std::string(Key::kIgnored), nullptr);
     }

@@ -50,8 +50,8 @@ bool add_imported(YamlNode& root, const base::PathGate& gate, base::SourceFiles&
 bool tell_if_stopped(const std::atomic<bool>* stop, const base::SourceRange& place,
                      base::DiagnosticSink& sink);
 
-/// Puts `hull: [CORNER, ...]` in the place of every `mesh` of a body of `world`: the corners of the
-/// convex hull of what is in its file. False after an error was reported.
+/// Replaces every `mesh` of a body of `world` by `hull: [CORNER, ...]`: the corners of the convex
+/// hull of the file's contents. False after an error was reported.
 bool add_meshes(YamlNode& root, const base::PathGate& gate, base::SourceFiles& files,
                 base::DiagnosticSink& sink, const std::atomic<bool>* stop = nullptr);
 
@@ -93,12 +93,13 @@ struct SampledValue {
   std::optional<Interval> within;     // of a formula
 };
 std::optional<SampledValue> read_sampled_value(const YamlEntry& entry, base::DiagnosticSink& sink);
-/// What `sampling` says beside `variables`, and sorts the formulas. What a reset gives the bodies
-/// of the world can be named in them.
+/// Reads the keys of `sampling` besides `variables`, and sorts the formulas. They can name the
+/// values that a reset gives the bodies of the world.
 void read_law(const YamlFields& fields, const WorldSpec& world, SamplingLaw& law,
               base::DiagnosticSink& sink);
-/// What formulas and conditions name must be a parameter, a variable of the simulator, or of a body
-/// that stands in the world; what a formula gives must be settable.
+/// Checks the names in formulas and conditions: each must be a parameter, a variable of the
+/// simulator, or a variable of a body that stands in the world. The result of a formula must be
+/// settable.
 void check_law(const Scenario& scenario, const std::vector<Parameter>& parameters,
                base::DiagnosticSink& sink);
 

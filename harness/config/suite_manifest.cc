@@ -133,7 +133,7 @@ class ManifestReader {
 
   void resolve_model(LocatedText& model) {
     const auto resolved = path_beside(model.source, model.text, files_).lexically_normal();
-    // Of what lies outside it is not told either whether it exists.
+    // For a path outside the gate, not even its existence is told.
     if (gate_.check(resolved, model.source, sink_)) {
       (void)base::check_file(resolved, model.source, sink_);
     }

@@ -11,7 +11,7 @@
 
 namespace parallax::harness {
 
-/// What a model's traces are held against. Something of it is set.
+/// The expected traces of a model. At least one field is set.
 struct TraceExpectation {
   std::optional<std::int64_t> traces;
   /// False: `traces` are looked for and there must be more; then `traces` is at least 1.

@@ -47,7 +47,7 @@ std::vector<KindUse> kind_uses(const FluentBinding& binding, const GroundFluent&
   if (const auto* inside = binding.inside()) {
     if (inside->unless) add(Key::kUnless, *inside->unless, VariableKind::kFlag);
     if (inside->only_if) add(Key::kOnlyIf, *inside->only_if, VariableKind::kFlag);
-    // The rest of what it reads is a place, and how upright the body is.
+    // Its other variables are places, and how upright the body is.
     for (const auto& variable : binding.variables(fluent, regions)) {
       const bool is_flag = std::any_of(
           out.begin(), out.end(), [&](const KindUse& one) { return one.variable == variable; });

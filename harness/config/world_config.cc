@@ -195,7 +195,8 @@ base::SourceRange range_of(const YamlNode& world, std::string_view path) {
   return range;
 }
 
-/// Of what the robot is to move; its own parts and furniture are of the engine's making.
+/// Warns of odd densities of the bodies that the robot is to move. The engine makes the robot's own
+/// parts and furniture.
 void warn_of_densities(const YamlNode& node, const WorldSpec& world, base::DiagnosticSink& sink) {
   const WorldLayout layout = lay_out(world);
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {

@@ -431,7 +431,7 @@ class WorldImporter {
     add_friction(made.friction, whole);
   }
 
-  /// Of the materials that are left when the scenario has said which it has others of.
+  /// Adds friction for the materials that are left after the scenario has replaced others.
   void add_friction(const FrictionSpec& friction, const base::SourceRange& range) {
     const auto known = materials_in(world_);
     MapNode pairs(range), under(range);

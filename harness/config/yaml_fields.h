@@ -19,7 +19,7 @@
 
 namespace parallax::harness {
 
-/// What a number must satisfy; an open bound excludes its value.
+/// The bounds of a number; an open bound excludes its value.
 struct NumberBounds {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();

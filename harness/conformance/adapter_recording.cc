@@ -59,7 +59,7 @@ std::string member_of(const char* name, const std::string& line) {
   return fmt::format(R"("{}_text":{})", name, base::json_quoted(line));
 }
 
-/// What is asked, whatever its number; and whether it is part of what was done.
+/// A request without its number, and its method.
 struct AskedRequest {
   std::string method, text;
   nlohmann::json id;
@@ -82,13 +82,13 @@ AskedRequest asked_of(nlohmann::json request) {
 
 bool is_of_a_run(const std::string& method) { return method == "act" || method == "observe"; }
 
-/// What was done, once this was asked as well.
+/// The digest of the requests of a run so far, after one more request.
 std::uint64_t done_after(std::uint64_t done, const AskedRequest& asked) {
   if (asked.method == "reset" || asked.method == "perform") return base::fnv1a64(asked.text);
   return is_of_a_run(asked.method) ? base::fnv1a64(asked.text, done) : done;
 }
 
-/// On standard error, as a simulator does; its loss loses the text.
+/// Writes to standard error, as a simulator does. A failed write loses the text.
 void tell(std::string_view text) { (void)base::write_all(STDERR_FILENO, base::shown_lines(text)); }
 
 }  // namespace

@@ -13,8 +13,8 @@
 
 namespace parallax::harness {
 
-/// What a simulator was asked and what it answered, as lines of JSON: a head, then one line for
-/// each request. Several processes may write one file: they append whole lines.
+/// The head line of a recording of a simulator's requests and replies. Lines of JSON follow, one
+/// for each request. Several processes may write one file: they append whole lines.
 inline constexpr std::string_view kAdapterRecordingHead = R"({"parallax_adapter_recording":1})";
 
 /// Passes requests from `in_fd` to the command and its replies to `out_fd`, and appends both to
@@ -38,7 +38,7 @@ class RecordedAdapter {
     std::string text;  // with the id that it had
     bool is_json = true, has_ended = false;
   };
-  /// What a request is answered by: what was done since the reset, and itself.
+  /// The key of a reply: the digest of the requests since the reset, and the request itself.
   using Key = std::pair<std::uint64_t, std::string>;
 
   std::map<Key, std::deque<Reply>> replies_;

@@ -11,7 +11,7 @@
 
 namespace parallax::harness {
 
-/// What is looked at, in this order.
+/// The checks, in the order in which they are made.
 enum class CheckKind : std::uint8_t {
   kHandshake,
   kReset,
@@ -50,11 +50,11 @@ struct ConformanceFinding {
   std::string text;
 };
 
-/// How closely the same start and seed gave the same run.
+/// The repeatability of runs with the same start and seed.
 enum class Repeatability : std::uint8_t { kUnknown, kNone, kTolerance, kBitwise };
 std::string_view to_string(Repeatability repeatability);
 
-/// What can be claimed of runs with this simulator, as it was measured; docs/adapters.md.
+/// The claims that runs with this simulator can support, as measured; docs/adapters.md.
 struct SupportedClaims {
   std::string replay, retries, independence, jobs, search, recordings;
 };

@@ -15,13 +15,13 @@
 
 namespace parallax::harness {
 
-/// Of the first reset, and of what must come out otherwise.
+/// The seed of the first reset, and further seeds whose results are compared with it.
 inline constexpr std::uint64_t kTriedSeeds[] = {1, 2, 3, (std::uint64_t{1} << 53U) - 1};
 
 std::optional<double> numeric(const Value& value);
 inline bool is_ready(const Outcome& outcome) { return outcome.status == SimStatus::kOk; }
 
-/// All of a check, from the first process to the claims.
+/// A whole check, from the first process to the claims.
 class Conformance {
  public:
   explicit Conformance(const ConformanceOptions& options)

@@ -7,7 +7,7 @@
 #include "harness/conformance/conformance_run.h"
 #include "harness/simulator/protocol_check.h"
 
-// What runs do: actions, the same again, seeds, limits of time.
+// Checks of runs: actions, repetition, seeds, time limits.
 
 namespace parallax::harness {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "harness/conformance/conformance_run.h"
 
-// What can be started with, and what must be refused.
+// Checks of starts: those that must be taken, and those that must be refused.
 
 namespace parallax::harness {
 namespace {
@@ -134,7 +134,8 @@ void Conformance::check_resets() {
                   starts_.size() == 1 ? "" : "s", report_.largest_deviation));
 }
 
-/// What cannot be started with must be refused, and leave it fit for the next start.
+/// Checks that a start which the simulator cannot take is refused. check_invalid_starts tries a
+/// good one afterwards.
 void Conformance::check_refused(const char* what, const State& start, bool may_be_invalid) {
   const auto outcome = reset(start, kTriedSeeds[0]);
   if (!outcome) return;

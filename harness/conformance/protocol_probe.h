@@ -18,7 +18,7 @@ class ProtocolProbe {
   explicit ProtocolProbe(const ProcessOptions& limits);
 
   bool is_alive() const { return child_ != nullptr; }
-  /// Why it is not alive, with the end of its standard error.
+  /// The reason why it is not alive, with the end of its standard error.
   const std::string& trouble() const { return trouble_; }
   double wall_s() const { return wall_s_; }  // of the last request
 

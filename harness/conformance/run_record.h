@@ -34,9 +34,9 @@ struct RunDifference {
 
 /// A digest that differs is a difference in numbers, however small.
 RunDifference difference_of(const State& a, const State& b, const std::string& when);
-/// What an action took may differ by `time_slack_s` without being counted in `largest`: clocks go
-/// in steps. `with_digest`: two runs whose seeds differ may well have other digests and nothing
-/// else.
+/// The difference between two runs. The durations of an action may differ by `time_slack_s` without
+/// being counted in `largest`: clocks go in steps. Without `with_digest`, digests are not compared:
+/// those of two runs whose seeds differ may well differ while nothing else does.
 RunDifference difference_of(const RunRecord& a, const RunRecord& b,
                             const std::vector<TriedAction>& actions, double time_slack_s,
                             bool with_digest = true);

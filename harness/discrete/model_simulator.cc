@@ -20,7 +20,7 @@ using runtime::Literal;
 constexpr std::int64_t kNoEvent = -1;
 constexpr double kTimepoint_s = 1.0;
 
-/// What a start says of a fluent; none if it is neither true nor false.
+/// The truth value of a fluent in a start; none if it is neither true nor false.
 std::optional<bool> truth_value(const Value& value) {
   if (const auto* boolean = std::get_if<bool>(&value)) return *boolean;
   if (const auto* whole = std::get_if<std::int64_t>(&value)) {

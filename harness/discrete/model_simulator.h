@@ -66,7 +66,7 @@ class ModelSimulator final : public Simulator {
 
   const Answer& steps(std::int64_t event);
   Answer find_steps(std::size_t step, std::int64_t event);
-  /// As assumptions: the state before the window, in one of its valuations.
+  /// The state before the window, in one of its valuations, as assumptions.
   std::vector<runtime::Literal> before(const WindowSolver& solver,
                                        const runtime::Bits& hidden) const;
   /// The states at `t` that the moves lead to and that go on.

@@ -15,7 +15,7 @@
 
 namespace parallax::harness {
 
-/// Why a list of possibilities was not given.
+/// The reason why a list of possibilities was not given.
 enum class ListEnd : std::uint8_t { kComplete, kTooMany, kStopped };
 
 /// One window of a layered model, which is asked for the states at its end, and for the smallest

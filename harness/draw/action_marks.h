@@ -10,7 +10,7 @@
 
 namespace parallax::harness {
 
-/// Of an action.
+/// The scene at one moment of an action.
 struct SceneMoment {
   double time_s = 0.0;  // since it began
   Scene scene;
@@ -27,7 +27,7 @@ struct SeenAction {
   State after;               // observed then
 };
 
-/// What there is to draw of an action that was seen to its end.
+/// The marks to draw for an action that was seen to its end.
 SceneAction action_marks(const SeenAction& seen, const WorldSpec& spec);
 
 }  // namespace parallax::harness

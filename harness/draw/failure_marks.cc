@@ -21,7 +21,7 @@ std::optional<double> value_of(const State& values, std::string_view name) {
   return found == values.end() ? std::nullopt : as_number(found->second);
 }
 
-/// What an action of the hand was about: its object, else the place or point that it names.
+/// The target of a hand action: its object, else the place or point that it names.
 std::optional<Eigen::Vector3d> aim_of(const Scene& scene, const WorldSpec& spec,
                                       const State& arguments, std::string& name) {
   name = word_of(arguments, "object");
@@ -41,14 +41,14 @@ std::optional<Eigen::Vector3d> aim_of(const Scene& scene, const WorldSpec& spec,
   return std::nullopt;
 }
 
-/// What was out of reach, and by how much: less than 0.
+/// A point out of reach, and by how much: a margin below 0.
 struct ShortReach {
   std::string name;
   Eigen::Vector3d there_W = Eigen::Vector3d::Zero();
   double margin_m = 0.0;
 };
 
-/// The arm moves along x alone: its end is where what is missing begins.
+/// Marks the reach of an arm that moves along x alone. The missing length begins at its end.
 void mark_line(const Scene& scene, const WorldSpec& spec, const ShortReach& missed,
                SceneAction& action) {
   const auto base = origin_of(scene, base_body(spec));

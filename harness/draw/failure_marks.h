@@ -11,10 +11,10 @@ namespace parallax::harness {
 /// "43 mm", "5.5 mm", "1.26 m"
 std::string length_text(double length_m);
 
-/// Where the body is, if the scene has it.
+/// The origin of the body, if the scene has it.
 std::optional<Eigen::Vector3d> origin_of(const Scene& scene, const std::string& body);
 
-/// Half way between the pads of an arm; of a robot on a line `arm` does not matter.
+/// The point half way between the pads of an arm; `arm` is ignored for a robot on a line.
 std::optional<Eigen::Vector3d> hand_of(const Scene& scene, const WorldSpec& spec,
                                        const std::string& arm);
 

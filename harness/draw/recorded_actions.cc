@@ -19,11 +19,12 @@ namespace {
 
 /// Half a step of the recording's time, and what sums of times are off by.
 constexpr double kSameTime_s = 0.75 * kFrameTime_s;
-/// Three moments of a recorder are farther apart: its steps, and the end of the action.
+/// Three successive moments from a recorder span more than this: its steps, and the end of the
+/// action.
 constexpr double kDense_s = 0.04;
-/// Farther away a body was not recorded where it was observed.
+/// A body farther away than this was not recorded where it was observed.
 constexpr double kRecorded_m = 2e-3;
-/// Of the recorded gaze: farther off it went elsewhere.
+/// If the recorded camera points farther off the target than this, the gaze went elsewhere.
 constexpr double kSameGaze_rad = 0.01;
 
 Eigen::Vector3d vector_of(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
@@ -221,8 +222,8 @@ Outcome RecordedActions::act(const std::string& controller, const State& argumen
   while (is_ahead_ && playback_.time_s() <= event.end_s + kSameTime_s) {
     const double time_s = playback_.time_s() - event.begin_s;
     read_frame();
-    // Of frames that come more often than a recorder writes them, some: what is kept follows from
-    // the time that the action took.
+    // If frames come more often than a recorder writes them, only some are kept. Which ones follows
+    // from the time that the action took.
     const bool is_dense =
         moments.size() > 2 && time_s - moments[moments.size() - 2].time_s < kDense_s;
     if (is_dense) {

@@ -294,7 +294,7 @@ class RobotDrawing {
                        o.x() - 13.0, o.y() + 14.0, name);
   }
 
-  /// One label under the other, in the order of the heights of what they name.
+  /// Draws labels one under the other, in the order of the heights of the objects that they name.
   template <typename Pixel>
   static void draw_column(const View& view, std::vector<Label> labels, double x, double centre,
                           bool ends_there, const Pixel& pixel, std::string& out) {

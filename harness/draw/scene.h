@@ -20,8 +20,8 @@ struct SceneBox {
   Eigen::Vector3d origin_W = Eigen::Vector3d::Zero();  // of the body
 };
 
-/// From a shoulder to a palm on a gantry. The simulator has no body there; without the line a hand
-/// would hang in the air. Chains of joints have bodies.
+/// A line from a shoulder to a palm on a gantry. The simulator has no body there; without the line
+/// a hand would hang in the air. Chains of joints have bodies.
 struct SceneArm {
   std::string name;
   Eigen::Vector3d from_W = Eigen::Vector3d::Zero(), to_W = Eigen::Vector3d::Zero();
@@ -49,7 +49,7 @@ struct SceneGoal {
   bool reached = false;
 };
 
-/// What a camera looks at: a cone.
+/// The cone that a camera looks at.
 struct SceneGaze {
   Eigen::Vector3d camera_W = Eigen::Vector3d::Zero(), point_W = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> border_W;  // of its far end, in order round the gaze
@@ -68,13 +68,13 @@ struct SceneMeasure {
   std::string label;  // "`base` and `drawer_mid` overlap by 43 mm"
 };
 
-/// How far an arm reaches.
+/// The range of an arm's reach.
 struct SceneReach {
   Eigen::Vector3d shoulder_W = Eigen::Vector3d::Zero();
   double min_m = 0.0, max_m = 0.0;
 };
 
-/// What one action did, to be drawn over the world as it stands at its end.
+/// The marks of one action, to be drawn over the world as it stands at its end.
 struct SceneAction {
   std::vector<SceneTrack> tracks;
   std::optional<SceneGoal> goal;
@@ -128,8 +128,9 @@ std::vector<Eigen::Vector2d> closed(std::vector<Eigen::Vector2d> points);
 /// "12.0,3.4 56.7,8.9", as polygons and polylines list their points.
 std::string point_list(const std::vector<Eigen::Vector2d>& points);
 
-/// From the world to the pixels of one view: from above x is to the right and y up; from the side,
-/// looking along +y, x is to the right and z up; looking along -x, y is to the right.
+/// The projection from the world to the pixels of one view: from above x is to the right and y up;
+/// from the side, looking along +y, x is to the right and z up; looking along -x, y is to the
+/// right.
 class Projection {
  public:
   Projection(const SceneFrame& frame, ViewKind kind, double left_px, double top_px, double px_per_m)
@@ -153,7 +154,7 @@ class Projection {
   std::vector<Eigen::Vector2d> pixels(const std::vector<Eigen::Vector3d>& points_W) const;
   /// Cut off at the border; empty if all of it lies outside.
   std::vector<Eigen::Vector2d> outline(const Probe& shape) const;
-  /// Of the face that the viewer looks at; greater is nearer [m].
+  /// The nearness of the face that the viewer looks at; greater is nearer [m].
   double nearness(const Probe& box) const;
 
  private:

@@ -41,7 +41,7 @@ class FrameBounds {
   Eigen::Vector3d high_ = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
 };
 
-/// What moved, was aimed at, met or measured, without the bodies as they stand.
+/// The bounds of all that moved, was aimed at, met or measured, without the bodies as they stand.
 FrameBounds bounds_of(const SceneAction& action) {
   FrameBounds bounds;
   for (const SceneTrack& track : action.tracks) {
@@ -154,7 +154,7 @@ SceneFrame action_frame(const Picture& picture, const RegionMap& regions) {
     const bool moves = item.kind == SceneKind::kItem || item.kind == SceneKind::kDrawer;
     const bool differs = moves && has(picture.action.differing, item.body);
     if (is_robot(item.kind) || differs || (nothing_done && moves)) bounds.include(item);
-    // Of a long piece of furniture the part near the action is enough.
+    // Furniture that was met is left out: of a long piece the part near the action is enough.
     if (moves && has(picture.action.met, item.body)) bounds.include(item);
   }
   for (const SceneArm& arm : picture.scene.arms) {

@@ -23,13 +23,13 @@ SceneFrame frame_around(const std::vector<Picture>& pictures, const RegionMap* r
 /// a person can place. Empty actions: around the robot and what can be moved.
 SceneFrame action_frame(const Picture& picture, const RegionMap& regions);
 
-/// Around both.
+/// The frame around both.
 SceneFrame frame_of_both(const SceneFrame& a, const SceneFrame& b);
 
 /// The bodies that take part: the robot's, those that moved, were met, looked for, or differ.
 std::set<std::string> taking_part(const Picture& picture);
 
-/// From where the action is seen best from the side.
+/// The side from which the action is seen best.
 ViewKind side_of(const Picture& picture);
 
 }  // namespace parallax::harness

@@ -70,7 +70,7 @@ std::string text_line(const std::string& text, double y_px, double font_px, cons
                      kGap_px, y_px, font_px, colour, base::xml_escaped(text));
 }
 
-/// What stands above the views, and how high it is.
+/// The text above the views, and its height.
 struct Head {
   std::string svg;
   double height_px = 0.0;

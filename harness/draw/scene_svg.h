@@ -14,8 +14,8 @@ struct SvgOptions {
   std::vector<std::string> differences = {};  // what was predicted and observed, a line each
   const RegionMap* regions = nullptr;         // drawn in the view from above, unless null
   double pixels_per_m = 220.0;  // at most; less where the picture would be wider than 6000 pixels
-  /// Of an action: as large as a view has room for, with what takes no part in it faint and a small
-  /// map of the world that shows where it is.
+  /// Does the picture show an action? Then it is as large as a view has room for, with uninvolved
+  /// bodies faint and a small map of the world that shows where it is.
   bool is_of_action = false;
   bool has_style = true;  // else the document around it has scene_style
 };

@@ -16,7 +16,7 @@ constexpr double kNear_px = 3.0, kStep_px = 10.0;
 constexpr int kRings = 16;
 constexpr std::size_t kLongestLabel = 60;  // characters
 
-/// Lower left corners of a text of this size inside of what it names, the best first.
+/// Lower left corners of a text of this size inside the named rectangle, the best first.
 std::vector<Eigen::Vector2d> inside(const Rectangle& named, const Eigen::Vector2d& size) {
   if ((named.size().array() < size.array() + 4.0).any()) return {};
   const double left = named.low.x() + 2.0, right = named.high.x() - size.x() - 2.0;

@@ -29,7 +29,7 @@ class LabelLayout {
   std::vector<Rectangle> texts_, avoided_;
 };
 
-/// Of what went wrong.
+/// The colour of things that went wrong.
 inline constexpr const char* kWarningColour = "#c00020";
 
 /// The colour of a kind's outlines and names.

@@ -11,7 +11,7 @@ namespace parallax::harness {
 std::string shown_in_full(std::string_view text);                    // 300 characters at most
 std::string shown_text(std::string_view text, std::size_t longest);  // not escaped
 
-/// How wide a text is at most in a common sans-serif font [px].
+/// An upper bound on the width of a text in a common sans-serif font [px].
 double text_width_px(std::string_view text, double font_px);
 
 }  // namespace parallax::harness

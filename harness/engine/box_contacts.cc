@@ -31,7 +31,7 @@ AxisOverlap overlap_along(const PlacedBox& a, const PlacedBox& b, const Eigen::V
           reach_m(a, axis) + reach_m(b, axis) - std::abs(apart_m)};
 }
 
-/// What overlaps least of the faces, and of the edges: infinitely where all are parallel.
+/// The least overlap of the faces and that of the edges, which is infinite where all are parallel.
 struct LeastOverlaps {
   AxisOverlap face, edges;
 };
@@ -70,7 +70,7 @@ struct Polygon {
   }
 };
 
-/// What of it is at `sign * coordinate <= limit`.
+/// The part of the polygon at `sign * coordinate <= limit`.
 Polygon clipped(const Polygon& polygon, Eigen::Index coordinate, double sign, double limit) {
   Polygon inside;
   for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -137,7 +137,8 @@ double deepest_m(const BoxContacts& contacts) {
   return deepest;
 }
 
-/// The corners of what of the other box's face is over this one and below its plane.
+/// Clips the incident face against the reference face and returns the corners below the reference
+/// plane.
 BoxContacts face_contacts(const PlacedBox& a, const PlacedBox& b, const AxisOverlap& face) {
   const bool of_first = face.first == 0;
   const FaceFrame frame = frame_of(of_first ? a : b, face.second,

@@ -16,8 +16,8 @@ struct BoxContact {
   double depth_m = 0.0;
 };
 
-/// Where two boxes touch. A face that lies on a face does so at the corners of what they share,
-/// eight at most; two edges that cross do so at a point.
+/// The contacts of two boxes. Two faces touch at the corners of their common part, eight at most;
+/// two edges that cross touch at a point.
 struct BoxContacts {
   Eigen::Vector3d normal_W = Eigen::Vector3d::UnitZ();  // from the first to the second, unit
   std::array<BoxContact, 8> points;

@@ -9,10 +9,10 @@
 
 namespace parallax::harness {
 
-/// What a shape is to the bodies that touch it. kPart: of the robot.
+/// The role of a shape for the bodies that touch it. kPart: part of the robot.
 enum class ShapeRole : std::uint8_t { kWorld, kFree, kNearPad, kFarPad, kPart };
 
-/// What contacts ask of a body, or of the floor.
+/// The properties of a body, or of the floor, that contacts depend on.
 struct ContactSide {
   std::optional<BodyId> body;  // none: the floor
   std::uint32_t assembly = 0, apart = 0;
@@ -34,7 +34,7 @@ class ContactRules {
   static bool never_collide(const ContactSide& a, const ContactSide& b) {
     return (a.assembly != 0 && a.assembly == b.assembly) || (a.apart != 0 && a.apart == b.apart);
   }
-  /// Of two that touch.
+  /// Records the touch of two bodies in contact.
   static void note(const ContactSide& a, const ContactSide& b, std::vector<Touch>& touches);
 
  private:

@@ -64,7 +64,7 @@ Ring ring_of(const Polyhedron& body, std::size_t face) {
   return ring;
 }
 
-/// What of a ring is not beyond a plane.
+/// The part of a ring that is not beyond a plane.
 Ring cut(const Ring& ring, const Eigen::Vector3d& outwards, const Eigen::Vector3d& on_plane) {
   Ring inside;
   for (std::size_t i = 0; i < ring.size(); ++i) {

@@ -35,7 +35,7 @@ bool is_near(const mjModel& model, const mjData& data, int geom, const Eigen::Ve
 
 using RowMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-/// Of a hull whose mesh a geom is.
+/// The pose of a hull whose mesh a geom is.
 struct PlacedMesh {
   Eigen::Vector3d p_WH;
   Eigen::Matrix3d R_WH;
@@ -230,8 +230,8 @@ Polyhedron polyhedron_of(const Engine& engine, const mjModel& model, const mjDat
 
 mjfCollision by_the_engine = nullptr;  // what it has for all that is convex
 
-/// A hull and a box, or two hulls: where a face lies on the other one, at corners of what they
-/// share.
+/// Finds the contacts of a hull and a box, or of two hulls: where a face lies on the other one, at
+/// corners of their common part.
 int collide_hulls(const mjModel* model, const mjData* data, mjContact* out, int a, int b,
                   mjtNum margin) {
   const int count = by_the_engine(model, data, out, a, b, margin);

@@ -17,7 +17,7 @@ struct mjData_;
 
 namespace parallax::harness {
 
-/// What the engine gave up on, in its words.
+/// An error of the engine, with its message.
 class EngineFault : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -35,7 +35,7 @@ struct JointPlace {
   int q = 0, v = 0;  // first place in the positions, in the velocities
 };
 
-/// Names of what the engine is told of, by index.
+/// Names of the parts that the engine is given, by index.
 std::string link_name(std::size_t link);
 std::string joint_name(std::size_t link, int part);
 std::string geom_name(std::size_t geom);
@@ -52,7 +52,7 @@ struct WorldText {
 };
 WorldText write_mjcf(const EngineInput& input);
 
-/// Half sides, or radius and half the length, as the engine wants them.
+/// The size as the engine takes it: half sides, or radius and half the length.
 Eigen::Vector3d engine_size_m(ShapeForm form, const Eigen::Vector3d& size_m);
 
 /// A hull, and its probe. The engine lays the frame of a mesh along its moments of inertia.
@@ -63,7 +63,7 @@ struct MeshHull {
   Eigen::Matrix3d R_HG = Eigen::Matrix3d::Identity();
 };
 
-/// Everything behind MujocoWorld.
+/// The state behind MujocoWorld.
 struct MujocoWorld::Engine {
   WorldLayout layout;
   SolverSpec solver;
@@ -107,10 +107,11 @@ void replace_collisions();
 /// Finds contacts as bodies stand, and leaves those of pairs that may touch, with their friction.
 void find_contacts(MujocoWorld::Engine& engine);
 
-/// The forces of a step, in the place of mj_fwdConstraint: what slides does not come apart by it.
+/// Solves the forces of a step, in place of mj_fwdConstraint. Sliding contacts do not come apart by
+/// it.
 void solve_friction(MujocoWorld::Engine& engine);
 
-/// What touches free bodies, of the contacts that were found.
+/// Records the touches of free bodies among the contacts that were found.
 void note_touches(MujocoWorld::Engine& engine);
 
 /// The deepest of the contacts that were found.

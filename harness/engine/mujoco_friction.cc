@@ -5,24 +5,25 @@
 
 #include "harness/engine/mujoco_engine.h"
 
-// MuJoCo finds the forces of a step as the minimum of a convex function. That takes friction for a
-// law of the same kind as pressure: what slides comes apart, by friction times the speed of its
-// sliding (Anitescu, Mathematical Programming 105, 2006), and a load that slips in a grip pushes
-// the pads away until they have lost it. So what pressure is to bring about is lowered by just that
-// (de Saxce and Feng, Mathematical and Computer Modelling 28, 1998). It depends on the sliding that
-// comes of it: solved again until both agree (Acary, Cadoux, Lemarechal and Malick, ZAMM 91, 2011),
-// three times as a rule. Where they do not, as in some steps in which sliding ends, the last one
-// counts.
+// MuJoCo finds the forces of a step as the minimum of a convex function. This treats friction as a
+// law of the same kind as pressure: a sliding contact comes apart, by friction times the speed of
+// its sliding (Anitescu, Mathematical Programming 105, 2006), and a load that slips in a grip
+// pushes the pads away until they have lost it. The acceleration asked of pressure is therefore
+// lowered by just that (de Saxce and Feng, Mathematical and Computer Modelling 28, 1998). The
+// correction depends on the resulting sliding, so the step is solved again until both agree (Acary,
+// Cadoux, Lemarechal and Malick, ZAMM 91, 2011), three times as a rule. Where they do not agree, as
+// in some steps in which sliding ends, the last solution counts.
 
 namespace parallax::harness {
 namespace {
 
 constexpr int kMostRounds = 20;
 constexpr int kWholeRounds = 5;            // from here on half of a change is made
-constexpr double kSameRate_m_s2 = 1e-3;    // of a change that is none
-constexpr double kSameShareOfRate = 1e-3;  // likewise, of what it is now
+constexpr double kSameRate_m_s2 = 1e-3;    // a smaller change counts as none
+constexpr double kSameShareOfRate = 1e-3;  // likewise, relative to the current rate
 
-/// What the sliding at a contact is to lose [m/s^2], with what the contact gives way.
+/// The acceleration that the sliding at a contact must lose [m/s^2], including the contact's
+/// compliance.
 double sliding(const mjData& data, int row, const double* lost) {
   double square = 0.0;
   for (int i = row + 1; i <= row + 2; ++i) {

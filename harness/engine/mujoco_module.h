@@ -16,7 +16,7 @@ namespace parallax::harness {
 inline constexpr const char* kMujocoModule = "parallax_mujoco.so";
 inline constexpr const char* kMujocoMaker = "parallax_make_mujoco_world";
 
-/// What the module makes a world of; it keeps copies.
+/// The input from which the module makes a world; it keeps copies.
 struct EngineInput {
   const WorldSpec& spec;
   const WorldLayout& layout;
@@ -33,7 +33,7 @@ bool has_mujoco();
 /// Why it is not, in words for a person; empty if it is.
 std::string why_no_mujoco();
 
-/// Why MuJoCo cannot step a world that is right otherwise.
+/// The reason why MuJoCo cannot step a world that is otherwise right.
 std::optional<TreeProblem> mujoco_problem(const WorldSpec& spec);
 
 /// Needs has_mujoco(), and no mujoco_problem().

@@ -9,9 +9,10 @@
 namespace parallax::harness {
 namespace {
 
-/// Deep contacts and stops give way by this share of what the rest of the world asks of them.
+/// MuJoCo's impedance of contacts and stops, shallow and deep, and the depth at which it is deep
+/// [m].
 constexpr double kShallow = 0.95, kDeep = 0.99, kDeepFrom_m = 0.001;
-/// Friction in a contact is so much stiffer than its pressure: what is held creeps the less.
+/// The stiffness of friction in a contact relative to that of pressure: held bodies creep the less.
 constexpr double kFrictionStiffness = 100.0;
 /// Motors are as rigid as the engine allows.
 constexpr double kRigid = 0.9999;
@@ -224,8 +225,8 @@ class TextWriter {
     out_ += "/>\n";
   }
 
-  /// Links that hang together are not even held against each other. What else never touches is left
-  /// out among the contacts (find_contacts).
+  /// Excludes pairs of links that hang together from collision altogether. Other pairs that never
+  /// touch are left out among the contacts (find_contacts).
   void write_exclusions() {
     out_ += "<contact>\n";
     const auto assembly = [&](std::size_t link) {

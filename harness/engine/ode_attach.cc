@@ -3,7 +3,7 @@
 #include "harness/engine/ode_hosts.h"
 #include "harness/engine/ode_vector.h"
 
-// What joints of the robot are attached to.
+// Attaches the joints of the robot to the bodies that host their links.
 
 namespace parallax::harness {
 

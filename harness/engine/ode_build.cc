@@ -252,7 +252,8 @@ void OdeBuilder::create_geoms() {
   dSpaceClean(engine_.static_space);
 }
 
-/// What is tried against each shape of the world before the engine looks closer is each space.
+/// Creates the collision spaces of links. Each space is tested as a whole against each shape of the
+/// world; a link with many shapes has one of its own.
 void OdeBuilder::create_link_spaces() {
   constexpr std::size_t kManyShapes = 5;
   for (const Link& link : engine_.layout.links) {

@@ -54,8 +54,8 @@ bool are_kept_apart(const GeomInfo& one, const GeomInfo& other) {
          (one.apart != 0 && one.apart == other.apart);
 }
 
-/// Of many points the deepest, then again and again the one that is farthest from those taken: what
-/// has many corners below stands on all sides of them, and not on the first few.
+/// Picks the deepest of many points, then repeatedly the one farthest from those taken. A body with
+/// many corners below thus stands on all sides of them, not on the first few.
 int spread_out(const std::array<dContactGeom, kMostHullContacts>& found, int count, int limit,
                std::array<dContact, kMostContacts>& out) {
   const auto point = [&](int i) {
@@ -113,7 +113,7 @@ void set_stiffness(const SolverSpec& solver, double softening, dSurfaceParameter
   }
 }
 
-/// What moves a geom; null: nothing does.
+/// The body that moves a geom; null: nothing moves it.
 dBodyID mover(const OdeWorld::Engine& engine, const GeomInfo& info) {
   return info.link ? engine.resting->host(info.link->index()) : nullptr;
 }

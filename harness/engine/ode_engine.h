@@ -23,7 +23,7 @@ namespace parallax::harness {
 /// kPart: of the robot.
 enum class ContactRole : std::uint8_t { kWorld, kFree, kNearPad, kFarPad, kPart };
 
-/// What the collision callback knows of a geom.
+/// The data of a geom for the collision callback.
 struct GeomInfo {
   std::optional<BodyId> body;  // none: the floor
   std::optional<LinkId> link;  // none: it never moves
@@ -43,14 +43,13 @@ struct Gantry {
   BodyId parent_id, child_id;                         // the first is meaningless without a parent
   Eigen::Vector3d start_P = Eigen::Vector3d::Zero();  // of the child in the parent by default [m]
   double start_yaw_rad = 0.0;
-  // Share of an error that a step takes back, and what of the weight the spring carries at rest, as
-  // a velocity; those of a rigid one.
+  // The share of an error that a step takes back, and the share of the weight that the spring
+  // carries at rest, as a velocity; the defaults are those of a rigid one.
   double vertical_share = 1.0, preload_m_s = 0.0;
-  double tilt_share = 0.0;  // of a suspended one
+  double tilt_share = 0.0;  // of a suspended gantry
 };
 
-/// What the motors of a gantry are told, until they have been told it: velocities in the parent's
-/// frame.
+/// The pending command for the motors of a gantry: velocities in the parent's frame.
 struct GantryOrder {
   Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();
   double yaw_rate_rad_s = 0.0;
@@ -73,10 +72,10 @@ struct BodyInLink {
   Eigen::Matrix3d R_LB = Eigen::Matrix3d::Identity();
 };
 
-/// Of a geom of the world.
+/// The data of a geom of the world.
 const GeomInfo& info_of(dxGeom* geom);
 
-/// Everything behind OdeWorld.
+/// The state behind OdeWorld.
 struct OdeWorld::Engine {
   WorldLayout layout;
   SolverSpec solver;
@@ -107,17 +106,17 @@ struct OdeWorld::Engine {
   std::uint64_t digest = 0;
   bool measure_times = false;
   StepStatistics statistics;
-  /// What the engine makes of hulls, once for each of them. Held here as long as geoms name them.
+  /// The engine's meshes, one for each hull. Held here as long as geoms refer to them.
   std::vector<std::pair<std::shared_ptr<const ConvexHull>, dxTriMeshData*>> meshes;
 };
 
-/// Its body's name, or "floor".
+/// The name of the geom's body, or "floor".
 std::string name_of(const OdeWorld::Engine& engine, const GeomInfo& info);
 
 /// A rotation as the engine wants it: four numbers a row.
 void copy_rotation(const Eigen::Matrix3d& R, double (&out)[12]);
 
-/// What a geom is made of.
+/// The form, size and hull that a geom is made of.
 struct GeomForm {
   ShapeForm form = ShapeForm::kBox;
   const Eigen::Vector3d& size_m;
@@ -126,7 +125,7 @@ struct GeomForm {
 
 /// A geom of this form and size; `space` may be null.
 dxGeom* create_geom(OdeWorld::Engine& engine, dxSpace* space, const GeomForm& form);
-/// Of all hulls; no geom names them any more.
+/// Destroys the meshes of all hulls. No geom may refer to them any more.
 void destroy_meshes(OdeWorld::Engine& engine);
 
 /// Creates everything from the layout, in its order. One use per engine.
@@ -159,10 +158,10 @@ class OdeBuilder {
   std::vector<std::string> materials_;  // sorted
 };
 
-/// Of a gantry's parent in the world.
+/// The rotation of a gantry's parent in the world.
 Eigen::Matrix3d parent_rotation(const OdeWorld& world, const Gantry& gantry);
 
-/// Tells the motors of gantries what is waiting for them.
+/// Passes pending commands to the motors of gantries.
 void carry_out_orders(const OdeWorld& world, OdeWorld::Engine& engine);
 
 /// Gives a free body another mass, spread as before.

@@ -217,7 +217,7 @@ void Hosts::merge(std::uint32_t root) {
   dBodyEnable(host);
 }
 
-/// Of a link, to that of its host.
+/// Adds the mass of a link to that of its host.
 void Hosts::add_mass(const LinkState& link, dMass& total) {
   dMass mass;
   dBodyGetMass(link.own, &mass);
@@ -288,7 +288,7 @@ void Hosts::listen(dxJoint* contact, std::optional<std::uint32_t> one,
   dJointSetFeedback(contact, &heard.forces);
 }
 
-/// What contacts push, joints need not.
+/// Subtracts contact forces from the loads of links: joints need not bear them.
 void Hosts::subtract_contacts() {
   for (const Feedback::Contact& contact : feedback_->of_contacts) {
     const dJointFeedback& forces = contact.forces;
@@ -320,7 +320,7 @@ void Hosts::measure_loads(double timestep_s) {
       parent.torque += links_[joint.child].load.torque;
       continue;
     }
-    // What it does to its child it does to its parent the other way round.
+    // The parent bears the reaction to the joint's force on its child.
     const Eigen::Vector3d at = to_vector(dBodyGetPosition(links_[joint.child].host));
     for (const dJointFeedback& part : feedback_->of_parts[i]) {
       const Eigen::Vector3d force = to_vector(part.f1);

@@ -57,27 +57,29 @@ class Hosts {
   void reset();
   /// Makes it so as the joints' `rests` say now. Nothing jumps: poses and velocities stay.
   void regroup();
-  /// Before a step.
+  /// Call it before a step.
   void remember_velocities();
-  /// After a step: what has another host goes where that went.
+  /// Call it after a step: moves links that have another host along with that host.
   void follow();
 
-  /// How the parent of a joint has turned and moved since the default: what was at p_W then is at
-  /// `shift` + `turn` p_W now, if it hangs at the parent.
+  /// The motion of the parent of a joint since the default: a point at p_W then is at `shift` +
+  /// `turn` p_W now, if it hangs at the parent.
   struct Motion {
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
     Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   };
   Motion motion_of_parent(const RobotJoint& joint) const;
-  /// Before a step, once all of its contacts are attached by `listen`: `count` of them will come.
+  /// Call it before a step, once all of its contacts are attached by `listen`. `count`: the number
+  /// of contacts to come.
   void expect_contacts(std::size_t count);
-  /// The forces of a contact of links, or of something else (none), are part of loads.
+  /// Counts the forces of a contact of links, or of something else (none), as parts of loads.
   void listen(dxJoint* contact, std::optional<std::uint32_t> one,
               std::optional<std::uint32_t> other);
-  /// After `follow`: what joints at rest had to bear in the step, from the motion of all that they
-  /// carry, the forces of the joints that hang at it and moved, and what contacts push.
+  /// Measures the loads that joints at rest had to bear in the step, from the motion of all that
+  /// they carry, the forces of the joints that hang at it and moved, and the contact forces. Call
+  /// it after `follow`.
   void measure_loads(double timestep_s);
-  /// What the motor of a hinge did in the last step in which it was solved [Nm].
+  /// The torque of a hinge's motor in the last step in which the joint was solved [Nm].
   double motor_torque_nm(std::size_t joint) const;
   /// The torque is about `about_W`.
   Wrench load(const RobotJoint& joint, const Eigen::Vector3d& about_W) const;
@@ -87,9 +89,9 @@ class Hosts {
   struct LinkState {
     dxBody* own = nullptr;
     dxBody* host = nullptr;
-    dxBody* shared = nullptr;  // the host of what has this link as its root, when that is more
+    dxBody* shared = nullptr;  // the host of the links with this root, if there are several
     bool of_robot = false;
-    std::optional<std::uint32_t> root;  // the first link of what moves with it; none: the world
+    std::optional<std::uint32_t> root;  // the first of the links that move with it; none: the world
     double mass_kg = 0.0;
     Eigen::Matrix3d I_L = Eigen::Matrix3d::Zero();        // about its middle, along its axes
     Eigen::Vector3d p_default = Eigen::Vector3d::Zero();  // in the world

@@ -8,7 +8,7 @@
 
 namespace parallax::harness {
 
-/// What the motors of a joint are told: velocities along the axes of a gantry's parent and about z
+/// A command for the motors of a joint: velocities along the axes of a gantry's parent and about z
 /// [m/s, rad/s], or one rate; the greatest force of a slider or hinge [N or Nm].
 struct MotorCommand {
   Eigen::Vector4d rates = Eigen::Vector4d::Zero();
@@ -35,9 +35,9 @@ class RestingJoints {
   dxBody* host(std::uint32_t link) const { return hosts_.of(link); }
   Hosts& hosts() { return hosts_; }
   void reset();
-  /// Before a step: `touched` by link, from the contacts of the step.
+  /// Call it before a step; `touched` is by link, from the contacts of the step.
   void begin_step(const std::vector<bool>& touched);
-  /// After a step.
+  /// Call it after a step.
   void end_step();
   std::int64_t resting() const { return resting_; }
 

@@ -9,8 +9,8 @@ namespace parallax::harness {
 namespace {
 
 constexpr double kSameNormal = 0.9999;  // cosine of the angle between the two
-/// What spans more by less than this is no better: corners of a ring that differ by rounding alone
-/// would take turns.
+/// A contact is better only if it spans more by this factor. Corners of a ring that differ by
+/// rounding alone would otherwise take turns.
 constexpr double kBetter = 1.001;
 
 bool same_side(const NewContact& one, const NewContact& other) {

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-// Between the engine's numbers and Eigen's; for ode_*.cc.
+// Conversions between the engine's numbers and Eigen's; for ode_*.cc.
 
 namespace parallax::harness {
 

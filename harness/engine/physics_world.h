@@ -12,7 +12,7 @@
 
 namespace parallax::harness {
 
-/// What touched a free body in the last step.
+/// The touches of a free body in the last step.
 struct Touch {
   std::uint32_t near_pads = 0, far_pads = 0;  // bit g: a pad of gripper g
   bool support = false;                       // anything that is not the robot
@@ -54,7 +54,7 @@ struct StepStatistics {
   double collide_s = 0.0, solve_s = 0.0;
 };
 
-/// What steps a world, as reports name it.
+/// The engine that steps a world, as reports name it.
 struct EngineName {
   std::string name, version;  // "ode", "0.16.2"
 };
@@ -97,7 +97,8 @@ class PhysicsWorld {
   /// A velocity motor that gives at most `max_torque_nm`. Wakes the bodies that it turns.
   virtual void set_hinge_motor(HingeId id, double rate_rad_s, double max_torque_nm) = 0;
 
-  /// Where the child of a gantry is, from its default place, in the frame of the parent [m].
+  /// The position of the child of a gantry relative to its default place, in the frame of the
+  /// parent [m].
   virtual Eigen::Vector3d gantry_position_m(GantryId id) const = 0;
   /// The child's turn about z against the parent, 0 at the default; within half a turn.
   virtual double gantry_yaw_rad(GantryId id) const = 0;

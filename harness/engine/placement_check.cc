@@ -61,7 +61,8 @@ bool can_set_any(const BodySpec& body, std::initializer_list<std::string_view> i
                      [&](std::string_view item) { return body.can_set(item); });
 }
 
-/// Bodies that every start puts at the same place can be held against each other beforehand.
+/// Checks overlaps. Bodies that every start puts at the same place can be tested against each other
+/// beforehand.
 class OverlapChecker {
  public:
   OverlapChecker(const WorldSpec& spec, ProblemList& problems)
@@ -86,7 +87,7 @@ class OverlapChecker {
  private:
   const BodySpec& body(std::size_t i) const { return layout_.bodies[layout_.bodies.id_at(i)]; }
 
-  /// May a start choose one of these of the body, or of what it hangs on?
+  /// May a start choose one of these items of the body, or of a body that it hangs on?
   bool chosen(std::size_t i, std::initializer_list<std::string_view> items) const {
     if (!layout_.link_of[i]) return false;
     for (std::size_t k = 0; k < layout_.bodies.size(); ++k) {
@@ -148,7 +149,7 @@ class OverlapChecker {
   std::set<std::pair<std::string, std::string>> reported_;
 };
 
-/// Of all free bodies, each standing on its longest edge.
+/// The height of all free bodies stacked, each standing on its longest edge [m].
 double stack_height_m(const PhysicsWorld& world) {
   const WorldLayout& layout = world.layout();
   double height_m = 0.0;
@@ -214,7 +215,7 @@ std::vector<BuriedBox> buried_boxes(const WorldSpec& spec, const std::vector<Nam
   const WorldLayout layout = lay_out(spec);
   std::vector<BuriedBox> found;
   for (const NamedBox& box : boxes) {
-    // What lies on a body is just above its top.
+    // A body that lies on another is just above the other's top.
     const Eigen::Vector3d high = box.high_W + Eigen::Vector3d(0.0, 0.0, kPlay_m);
     const SolidBox region{high - box.low_W, 0.5 * (box.low_W + high), 0.0};
     for (std::size_t i = 0; i < layout.bodies.size(); ++i) {

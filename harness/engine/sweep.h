@@ -9,13 +9,13 @@
 
 namespace parallax::harness {
 
-/// What stands in the way of a motion.
+/// An obstacle to a motion.
 struct Obstacle {
-  std::string part;      // of what moves
+  std::string part;      // of the moving bodies
   std::string obstacle;  // body, or "floor"
   double way_m = 0.0;    // how far the motion gets
-  /// Of a straight motion, the room across it, sideways if it is level [m]: below 0, as here, by
-  /// how much part and obstacle overlap where one would pass the other. None: a turn, or the floor.
+  /// For a straight motion, the room across it, sideways if it is level [m]. It is below 0 here:
+  /// the overlap of part and obstacle where one would pass the other. None: a turn, or the floor.
   std::optional<double> clearance_m = {};
 };
 
@@ -23,8 +23,8 @@ struct Obstacle {
 /// as they stand at construction, against everything else that is not in `ignored`.
 class Sweep {
  public:
-  /// Overlaps of at most `tolerance_m` count as touching; a negative one asks for so much room all
-  /// round.
+  /// Overlaps of at most `tolerance_m` count as touching; a negative tolerance asks for that much
+  /// room all round.
   Sweep(const PhysicsWorld& world, const BodyMask& bodies, const BodyMask& ignored,
         double tolerance_m);
 

@@ -175,7 +175,7 @@ struct Grip {
   double effort_n = 0.0;  // 0: as the action says
 };
 
-/// What an arm's pads can close on.
+/// The grip widths and the force that an arm's pads are capable of.
 struct GripRange {
   const ArmSpec* arm = nullptr;
   double narrowest_m = 0.0, widest_m = 0.0;  // by the stops of the finger
@@ -305,7 +305,7 @@ void check_grippers(const WorldSpec& spec, ProblemList& problems) {
   if (spec.mobile) GripperChecker(spec, problems).run();
 }
 
-/// What MuJoCo has no words for.
+/// Reports a joint that MuJoCo cannot represent.
 void check_for_mujoco(const WorldSpec& spec, ProblemList& problems) {
   if (const auto problem = mujoco_problem(spec)) {
     problems.add("joints/" + problem->joint, problem->message + "; MuJoCo needs one");

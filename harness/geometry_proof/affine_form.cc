@@ -16,7 +16,7 @@ constexpr double kTiny = std::numeric_limits<double>::min();
 /// The sine and cosine of the C library are off by less than this.
 constexpr double kTrigonometry = 4.0 * std::numeric_limits<double>::epsilon();
 
-/// An upper bound of what the sum of a few terms not below 0 would be without rounding.
+/// An upper bound of the exact sum, given the rounded sum of a few non-negative terms.
 double up(double sum) { return sum + sum * 64.0 * kUnit + kTiny; }
 
 }  // namespace

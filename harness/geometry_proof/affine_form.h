@@ -42,7 +42,7 @@ class AffineForm {
 
   friend AffineForm sine(const AffineForm& x);
   friend AffineForm cosine(const AffineForm& x);
-  /// Of the part of `x` that is not negative; that part must not be empty.
+  /// The square root of the non-negative part of `x`; that part must not be empty.
   friend AffineForm root(const AffineForm& x);
   friend AffineForm absolute(const AffineForm& x);
 

@@ -14,7 +14,7 @@ struct AxisView {
   AffineForm width;  // half of both
   /// The room on this side (1 or -1) of a motion along the whole way.
   AffineForm gap(double side) const;
-  /// By how much they overlap once this share of the way is gone; the less certain side.
+  /// The overlap once this share of the way is gone, on the less certain side.
   AffineForm overlap(double share) const;
 };
 

@@ -10,7 +10,7 @@
 
 namespace parallax::harness {
 
-/// What was proved of one test of an action.
+/// The result of proving one test of an action.
 struct TestCertificate {
   CheckedTest test;
   std::vector<std::string> assumed;
@@ -27,7 +27,7 @@ struct ActionCertificate {
   std::string left_to_simulation;  // why; empty if there are tests
 };
 
-/// What was proved of a trace, and all that it takes to check it again.
+/// The proof of a trace, with all data needed to check it again.
 struct Certificate {
   std::string scenario;
   std::string scenario_hash;  // over all its texts
@@ -48,9 +48,9 @@ double volume_share(const StartBox& box, const StartBox& region);
 /// Adds a box's share of the region to what its verdict has.
 void add_share(const DecidedBox& box, const StartBox& region, TestCertificate& test);
 
-/// A certificate as JSON, and back; a text that says what is wrong with one that cannot be read.
-/// Every member is required. Numbers that follow from others are held against them: the shares of
-/// a test, and how many boxes were examined, against its boxes.
+/// Writes a certificate as JSON, and reads one; a text describes the fault of one that cannot be
+/// read. Every member is required. Derived numbers are checked: the shares of a test, and the
+/// number of boxes examined, against its boxes.
 std::string certificate_json(const Certificate& certificate);
 std::optional<std::string> read_certificate(std::string_view text, Certificate& certificate);
 
@@ -77,18 +77,18 @@ struct CheckedCertificate {
   double safe = 0.0, refuted = 0.0;  // shares of the region that were confirmed
 };
 
-/// A certificate held against what its scenario says by now. Nothing in it is believed: tests and
-/// what they take for granted are derived anew from the scenario and its assumptions, whose values
-/// are held against what the options of the program admit.
+/// The result of checking a certificate against its current scenario. The certificate is not
+/// trusted: tests and their assumptions are derived anew from the scenario and the certificate's
+/// assumed values, which are compared with those that the options of the program admit.
 struct CertificateCheck {
-  std::string mismatch;          // it is of something else, or says what is not so; empty: neither
+  std::string mismatch;          // it is about something else, or claims an untruth; empty: neither
   std::int64_t confirmed = 0;    // decided boxes
   std::int64_t unconfirmed = 0;  // the second evaluation did not get there
   std::int64_t wrong = 0;        // at the middle of the box it says the contrary
   std::vector<CheckedCertificate> tests;
   std::vector<ProvableAction> actions;  // with tests, as the certificate has them
 
-  /// Something was confirmed, and nothing is open or wrong of what is said to be decided.
+  /// Something was confirmed, and no decided box is open or wrong.
   bool is_confirmed() const {
     return mismatch.empty() && confirmed > 0 && unconfirmed == 0 && wrong == 0;
   }

@@ -1,6 +1,6 @@
-// A certificate held against its scenario. The certificate says only where to look: which boxes, of
-// which tests. Everything else is made anew and compared, and each decided box is put to the second
-// evaluation alone.
+// Checks a certificate against its scenario. The certificate says only where to look: which boxes,
+// of which tests. Everything else is made anew and compared, and each decided box is put to the
+// second evaluation alone.
 
 #include <fmt/format.h>
 

@@ -49,7 +49,7 @@ class DriveCheck final : public GeometricCheck {
 
   const CheckedTest& test() const override { return test_; }
 
-  /// Of each pair two: whether the way is clear of it, and whether the turn is.
+  /// Two questions for each pair: whether the way is clear of it, and whether the turn is.
   std::vector<std::uint32_t> questions() const override {
     std::vector<std::uint32_t> all(2 * pairs_.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);

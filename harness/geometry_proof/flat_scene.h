@@ -16,7 +16,7 @@ namespace parallax::harness {
 struct FlatShape {
   enum class Frame { kWorld, kBase, kBody, kHand };
   Frame frame = Frame::kWorld;
-  std::size_t body = 0;                            // of kBody, and of what a hand holds
+  std::size_t body = 0;                            // of kBody, and of a held body
   Eigen::Vector2d hand = Eigen::Vector2d::Zero();  // in the frame of the base
   Polygon corners;  // in the frame, round everywhere that it may be but for `slack_m`
   double slack_m = 0.0;
@@ -66,12 +66,12 @@ class FlatScene {
   /// Halves of a box, and its widest variable.
   static std::pair<StartBox, StartBox> cut(const StartBox& box, std::size_t axis);
   static std::size_t widest_of(const StartBox& box);
-  /// How far a free body may lie beside and be turned against where range_of has it [m, rad].
+  /// The bounds on how far a free body may lie beside range_of and be turned against it [m, rad].
   std::pair<double, double> free_slack(std::size_t body) const;
   PlanarRange base_range(const StartBox& box) const;
-  /// Where the frame of a part is once the base is at `base`.
+  /// The range of the frame of a part once the base is at `base`.
   PlanarRange carried(const FlatShape& part, const PlanarRange& base, const StartBox& box) const;
-  /// What a turn about the base's middle makes of a part: anything held is a disc then.
+  /// The shape of a part for a turn about the base's middle: anything held is a disc.
   Polygon turning_corners(const FlatShape& part) const;
   PlanarRange range_of(const FlatShape& shape, const StartBox& box) const;
   Polygon at_middle(const FlatShape& shape, const StartBox& box) const;

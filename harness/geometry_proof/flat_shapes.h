@@ -8,16 +8,16 @@
 
 namespace parallax::harness {
 
-/// What the second evaluation leaves for rounding, and two right angles twice.
+/// The second evaluation's allowance for rounding, and a full turn.
 inline constexpr double kFlatRounding_m = 1e-9;
 inline constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
 
 /// A convex polygon, corners in order against the clock [m].
 using Polygon = std::vector<Eigen::Vector2d>;
 
-/// Around all points (Andrew's monotone chain).
+/// The convex hull of the points (Andrew's monotone chain).
 Polygon hull_of(std::vector<Eigen::Vector2d> points);
-/// What two convex polygons have in common; empty if nothing (Sutherland and Hodgman).
+/// The intersection of two convex polygons; empty if there is none (Sutherland and Hodgman).
 Polygon common_part(const Polygon& a, const Polygon& b);
 double area_of(const Polygon& polygon);
 Eigen::Vector2d centroid_of(const Polygon& polygon);

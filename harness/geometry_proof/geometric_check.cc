@@ -5,10 +5,11 @@
 namespace parallax::harness {
 namespace {
 
-/// What is halved goes by the question that is farthest from clear, and a little by the others.
+/// The influence of other questions on the choice of the variable to halve, relative to the
+/// question that is farthest from clear.
 constexpr double kOtherInfluence = 0.01;
-/// The rest of a form is what is not known, and what is not linear in a box: at least so much of it
-/// is taken for the former once it is larger than all that the box can sway.
+/// The rest of a form comes from missing knowledge and from nonlinearity in the box. At least this
+/// share of it is attributed to missing knowledge once it exceeds all that the box can sway.
 constexpr double kBlurred = 0.8;
 
 }  // namespace

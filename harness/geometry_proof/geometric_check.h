@@ -12,7 +12,8 @@
 
 namespace parallax::harness {
 
-/// Of a box of starts: the check passes everywhere in it, refuses everywhere in it, or either.
+/// The verdict on a box of starts: the check passes everywhere in it, refuses everywhere in it, or
+/// is undecided.
 enum class BoxVerdict : std::uint8_t { kSafe, kRefuted, kOpen };
 std::string_view to_string(BoxVerdict verdict);  // "safe", "refuted", "open"
 
@@ -20,13 +21,13 @@ std::string_view to_string(BoxVerdict verdict);  // "safe", "refuted", "open"
 /// millionth of their length, and rounds.
 inline constexpr double kEngineRoom_m = 1e-5;
 
-/// What a proof is about: one test of a controller.
+/// The subject of a proof: one test of a controller.
 struct CheckedTest {
   std::string controller;  // "drive"
   std::string function;    // "Drive::is_blocked"
   std::string source;      // "harness/robot/mobile_drive.cc"
-  std::string refusal;     // what the controller's reason begins with
-  std::string statement;   // what it asks, in words
+  std::string refusal;     // beginning of the controller's reason
+  std::string statement;   // the question, in words
   bool is_at_once = true;  // asked before the action takes any time
 };
 
@@ -44,8 +45,8 @@ class GeometricCheck {
     BoxVerdict verdict = BoxVerdict::kOpen;
     std::vector<std::uint32_t> open = {};  // questions that are left
     std::vector<double> influence = {};    // of each variable on what is open
-    /// What is open is so for want of knowledge, not of boxes: it will not be decided anywhere in
-    /// this one.
+    /// Do the open questions lack knowledge, not smaller boxes? Then they will not be decided
+    /// anywhere in this one.
     bool is_hopeless = false;
     std::string culprit = {};  // "`base` would meet `drawer_mid`"
 

@@ -24,8 +24,8 @@ struct HandShape {
 struct HandDescent {
   BodyId object;
   double wrist_rad = 0.0;  // of the grasp, and with it of the hand against the believed heading
-  double error_m = 0.0, error_rad = 0.0;  // of what is believed as drawn; how nearly the hand turns
-  /// What the camera adds to that where it sees from anywhere in a box of starts.
+  double error_m = 0.0, error_rad = 0.0;  // of the believed pose as drawn; of the hand's turn
+  /// The additional error of the camera, seeing from anywhere in a box of starts.
   std::function<SightError(std::span<const Bounds1>)> seen;
   double clearance_m = 0.0;       // of each pad, as the action asks for it
   double rise_m = 0.0;            // of the way, above its lowest
@@ -51,7 +51,8 @@ std::unique_ptr<SecondEvaluation> make_second_hand(const WorldSpec& spec, const 
                                                    const KnownState& state, std::size_t arm,
                                                    BodyId object, const HandDescent& descent);
 
-/// How far the parts of a hand stand from where its joints have them: the engine holds them there.
+/// The greatest distance of the parts of a hand from where its joints have them: the engine holds
+/// them there.
 inline constexpr double kJointRoom_m = 1e-4;
 
 }  // namespace parallax::harness

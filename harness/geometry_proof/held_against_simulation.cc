@@ -24,7 +24,7 @@ double number_in(const State& state, const std::string& name, double fallback) {
 
 bool off(double a, double b, double by) { return std::abs(a - b) > by + 1e-9; }
 
-/// What of the state before an action is not as it was taken for granted.
+/// The assumptions that the state before an action breaks.
 std::vector<std::string> broken_assumptions(const WorldSpec& spec, const WorldLayout& layout,
                                             const ProofScene& scene, const KnownState& known,
                                             const State& start, const State& now) {

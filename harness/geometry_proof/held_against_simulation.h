@@ -12,14 +12,14 @@
 
 namespace parallax::harness {
 
-/// What simulations of uniform starts showed of one test.
+/// The results of simulating uniform starts, for one test.
 struct SimulatedTest {
   struct Count {
     std::int64_t starts = 0, refused = 0;
   };
   std::array<Count, 3> by_verdict;  // of the box that the start lies in, by BoxVerdict
-  /// Simulations in which something was not as the proof takes for granted; they say nothing of
-  /// the verdicts and are not counted there. By what it was.
+  /// Simulations in which an assumption of the proof was broken; they say nothing of the verdicts
+  /// and are not counted there. `broken`: by assumption.
   std::int64_t not_as_assumed = 0;
   std::map<std::string, std::int64_t> broken;
   /// Starts whose simulation contradicts the verdict of their box.

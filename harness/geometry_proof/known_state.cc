@@ -57,7 +57,7 @@ void forget_looks(KnownState& state) {
   for (KnownBody& body : state.bodies) body.look.reset();
 }
 
-/// What an assumption of the user's says of a slider, if one does.
+/// The user's assumption about a slider, if there is one.
 const Bounds1* given_slider(const ProofAssumptions& assumptions, const JointSpec& joint) {
   for (const auto& [name, bounds] : assumptions.sliders) {
     if (name == joint.name + ".q") return &bounds;

@@ -14,49 +14,50 @@
 
 namespace parallax::harness {
 
-/// What is taken for granted about the actions before the one that is looked at.
+/// The assumptions about the actions before the examined one.
 struct ProofAssumptions {
-  /// What no action was to move stays where it was, up to this.
+  /// Bodies that no action was to move stay where they were, up to this.
   double drift_m = 0.002, drift_rad = 0.005;
-  /// What lies in a drawer keeps its place in it, up to this, while the drawer moves.
+  /// Bodies in a drawer keep their place in it, up to this, while the drawer moves.
   double sliding_m = 0.010, sliding_rad = 0.05;
-  /// The base stands so near to where it drove, where its controller does not ask for less.
+  /// The base stands within this of where it drove, unless its controller asks for less.
   double goal_m = 10.0, goal_rad = 10.0;
-  /// A parked tool is so near to where it is carried; the default is what `park` itself judges by.
+  /// A parked tool is within this of where it is carried; the default is the tolerance of `park`
+  /// itself.
   double parked_m = 0.03;
-  /// What is held is so near to where it was gripped, seen from above, and turned by so much; so
-  /// much higher or lower, and leaning by so much.
+  /// A held body is within `held_m` of where it was gripped, seen from above, and turned by at most
+  /// `held_rad`. It is at most `held_height_m` higher or lower, and leans by at most `lean_rad`.
   double held_m = 0.03, held_rad = 0.2;
   double held_height_m = 0.03, lean_rad = 0.2;
-  /// Where sliders stand ("dMid.q"), in place of what the success of an action says.
+  /// Positions of sliders ("dMid.q") that replace those implied by the success of an action.
   std::vector<std::pair<std::string, Bounds1>> sliders;
   friend bool operator==(const ProofAssumptions&, const ProofAssumptions&) = default;
 };
 
-/// Where an arm's tool may be: as it was at the start, where parking leaves it, or anywhere.
+/// The place of an arm's tool: as it was at the start, where parking leaves it, or anywhere.
 enum class KnownArm { kAtStart, kParked, kAnywhere };
 
-/// What is known of a free body.
+/// The knowledge of a free body.
 struct KnownBody {
   enum class Where { kAtStart, kHeld, kAnywhere };
   Where where = Where::kAtStart;
   std::string arm;                  // that holds it
   int drives = 0;                   // before it was picked up
   std::optional<SliderId> carrier;  // whose child it lies in and moves with
-  /// How it was looked for last, and from where: since then the camera has not moved.
+  /// The last look for the body. The camera has not moved since then.
   struct Look {
     int points = 0, needed = 0;
   };
   std::optional<Look> look;
 };
 
-/// What is known of a mobile robot's world before an action, as far as it follows from the start
-/// and from the success of the actions before: what their controllers' own judgement asserts.
+/// The knowledge of a mobile robot's world before an action. It follows from the start and from the
+/// success of the actions before, that is, from the assertions of their controllers' own judgement.
 struct KnownState {
   bool is_start = true;    // nothing has moved yet: all is exactly where the start puts it
   ProofAssumptions slack;  // all 0 while nothing has moved
   int drives = 0;          // so far
-  /// Where it drove to; none: where the start put it.
+  /// The place where it drove to; none: where the start put it.
   struct Goal {
     Eigen::Vector2d p = Eigen::Vector2d::Zero();
     double yaw_rad = 0.0, within_m = 0.0, within_rad = 0.0;
@@ -68,15 +69,15 @@ struct KnownState {
   std::vector<KnownArm> arms;        // as in MobileRobotSpec
   std::vector<KnownBody> bodies;     // by BodyId
   std::optional<PlaceSpec> gaze;     // where the camera was told to look, from where it is now
-  std::vector<std::string> assumed;  // in words, one for each thing that is taken for granted
+  std::vector<std::string> assumed;  // in words, one for each assumption
 };
 
-/// Before the first action, of starts from `region`.
+/// The knowledge before the first action, for starts from `region`.
 KnownState state_at_start(const WorldSpec& spec, const WorldLayout& layout,
                           const StartCuboid& region);
 
-/// What is known once `call` has succeeded as well; a text instead where nothing can be said any
-/// more.
+/// Adds the knowledge that `call` has succeeded as well. Returns a text where nothing can be said
+/// any more.
 std::optional<std::string> assume_success(const WorldSpec& spec, const WorldLayout& layout,
                                           const std::string& event,
                                           const ControllerSpec& controller,

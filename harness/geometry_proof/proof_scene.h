@@ -34,8 +34,8 @@ struct ScenePiece {
   double half_x = 0.0, half_y = 0.0;
   Bounds1 bottom = {}, top = {};                      // in the world
   Eigen::Vector2d slack_m = Eigen::Vector2d::Zero();  // of its middle, against its carrier
-  // Of kHand: where the hand is in the base's frame, and a circle round it that holds the shape
-  // however it is turned.
+  // For kHand: the hand's place in the base's frame, and the radius of a circle round it that holds
+  // the shape however it is turned.
   Eigen::Vector2d hand = Eigen::Vector2d::Zero();
   double hand_radius_m = 0.0;
 };
@@ -61,14 +61,14 @@ class ProofScene {
              const KnownState& state);
 
   const std::vector<ScenePiece>& pieces() const { return pieces_; }
-  /// Why the place of something is not known: "the left arm", "`cup1`"; empty if all is known.
+  /// The things whose place is not known: "the left arm", "`cup1`"; empty if all is known.
   const std::vector<std::string>& unknown() const { return unknown_; }
   /// Where a body that the arm holds has the arm's tool, in the body's frame: beside the grasp, as
   /// the near pad stays where it is while the far one closes; `side` -1 where the hand is turned
   /// the other way.
   Eigen::Vector3d gripped_at(const GraspSpec& grasp, std::size_t arm, double side) const;
   const ArmGeometry& arm(std::size_t index) const { return arms_[index]; }
-  // Of the base at the default placement.
+  // The height and heading of the base at the default placement.
   double base_z() const;
   double base_yaw_rad() const;
   const KnownState& state() const { return *state_; }
@@ -76,7 +76,7 @@ class ProofScene {
   const WorldLayout& layout() const { return *layout_; }
   const StartCuboid& region() const { return region_; }
 
-  /// What is drawn from an interval, not fixed: at most AffineForm::kMostVariables.
+  /// The variables drawn from an interval, not fixed: at most AffineForm::kMostVariables.
   const std::vector<std::string>& variables() const { return variables_; }
   StartBox whole() const;
 
@@ -88,12 +88,12 @@ class ProofScene {
   struct Point {
     AffineForm x, y, z;
   };
-  /// A point of what stands on the torso, given in the frame of the base.
+  /// A point of a part on the torso, given in the frame of the base.
   Point on_torso(const Eigen::Vector3d& p_B, const Base& base) const;
   UprightBox place(const ScenePiece& piece, std::span<const Bounds1> box, const Base& base) const;
   /// The value of a variable, which may be fixed, or `fallback` where it is not set.
   AffineForm variable(const std::string& name, std::span<const Bounds1> box, double fallback) const;
-  /// Where the origin of a free body is in the plane and how it is turned.
+  /// The origin of a free body in the plane, and its heading.
   Base free_body(BodyId id, std::span<const Bounds1> box) const;
   /// Range of the height of its origin.
   Bounds1 free_height(BodyId id) const;

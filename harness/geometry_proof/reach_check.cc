@@ -44,7 +44,7 @@ class ReachCheck final : public GeometricCheck {
       const double reach = is_far_end ? arm_.max_reach_m : arm_.min_reach_m;
       const AffineForm margin =
           is_far_end ? AffineForm(reach * reach) - square : square - AffineForm(reach * reach);
-      // A length that is off by the room makes so much of its square.
+      // The error of a squared length whose root is off by the room.
       const double room = 2.0 * reach * kEngineRoom_m;
       if (!finding.settle(question, margin, room,
                           is_far_end ? "out of reach" : "too near to the shoulder")) {

@@ -19,20 +19,20 @@ class SecondEvaluation {
   /// where that is not enough.
   virtual bool confirms(std::span<const Bounds1> box, BoxVerdict verdict, int effort) const = 0;
 
-  /// At one start, with everything else in the middle of where it may be: does the test refuse?
-  /// Safe boxes promise that it does not even between the places that the controller tries.
+  /// Does the test refuse at one start, with everything else in the middle of its range? Safe boxes
+  /// promise that it does not even between the places that the controller tries.
   virtual bool refuses_at(std::span<const double> start) const = 0;
 };
 
 /// A box that has one start.
 StartBox box_at(std::span<const double> start);
 
-/// Of `Drive::is_blocked`. All outlive it.
+/// The second evaluation of `Drive::is_blocked`. All arguments outlive it.
 std::unique_ptr<SecondEvaluation> make_second_drive(
     const WorldSpec& spec, const WorldLayout& layout, const StartCuboid& region,
     const KnownState& state, const KnownPoint& target, double yaw_rad, double sweep_step_m);
 
-/// Of `require_reach` and of `Perception::look_at`.
+/// The second evaluations of `require_reach` and of `Perception::look_at`.
 std::unique_ptr<SecondEvaluation> make_second_reach(const WorldSpec& spec,
                                                     const WorldLayout& layout,
                                                     const StartCuboid& region,

@@ -40,7 +40,7 @@ std::array<Bounds1, 3> way_in_body(const ProofScene& scene, std::span<const Boun
   std::array<Bounds1, 3> way = {
       along.bounds(), across.bounds(),
       Bounds1{height.lower - camera.z.upper(), height.upper - camera.z.lower()}};
-  // What keeps its place may lean, about both level axes.
+  // A body that keeps its place may lean, about both level axes.
   double square = 0.0;
   for (const Bounds1& one : way) square += std::pow(std::max(-one.lower, one.upper), 2);
   const double lean_m = scene.state().slack.drift_rad * std::sqrt(square);

@@ -16,7 +16,7 @@
 namespace parallax::harness {
 namespace {
 
-/// What an action is examined with.
+/// The input for the examination of an action.
 struct ActionInput {
   const WorldSpec& spec;
   const WorldLayout& layout;
@@ -184,7 +184,8 @@ void add_tests(const ActionInput& in, std::string_view controller, ProvableActio
   action.left_to_simulation = "no test of its controller is decided by the start alone";
 }
 
-/// What the tests know of.
+/// Does the world have only parts that the tests support? These are upright boxes, without hinges
+/// and without bodies that are kept apart.
 bool is_of_upright_boxes(const WorldLayout& layout) {
   return layout.hinges.empty() &&
          std::all_of(layout.bodies.begin(), layout.bodies.end(), [](const BodySpec& body) {

@@ -30,7 +30,7 @@ class ActionTest {
   const KnownState& state() const { return state_; }
   const ProofScene& scene() const { return scene_; }
   const GeometricCheck& check() const { return *check_; }
-  /// Says in words what this test takes for granted besides.
+  /// Adds an assumption of this test, in words.
   void assume(std::string what) { state_.assumed.push_back(std::move(what)); }
   const SecondEvaluation& second() const { return *second_; }
   void set(std::unique_ptr<GeometricCheck> check, std::unique_ptr<SecondEvaluation> second) {

@@ -11,7 +11,7 @@
 
 namespace parallax::harness {
 
-// What the readers of all formats come to: links and joints of one world, with full poses.
+// The common result of the readers of all formats: links and joints of one world, with full poses.
 
 struct LinkShape {
   ShapeForm form = ShapeForm::kBox;
@@ -41,7 +41,7 @@ struct JointDescription {
   std::string parent;  // link, or empty for the world
   std::string child;
   Eigen::Vector3d axis_W = Eigen::Vector3d::UnitX(), p_WA = Eigen::Vector3d::Zero();
-  double low = 0.0, high = 0.0;  // beyond the bounds of what we can say: none
+  double low = 0.0, high = 0.0;  // beyond the bounds that can be expressed: none
   double damping = 0.0, friction = 0.0;
   std::size_t offset = 0;
 };
@@ -69,14 +69,15 @@ void add_mesh(const ImportInput& input, const std::string& uri, const std::strin
               const Eigen::Vector3d& scale, LinkShape shape, LinkDescription& link,
               LeftOutList& left_out);
 
-/// Bodies and joints in our own vocabulary: links without mass become part of what they are fixed
-/// to, body frames stand upright at the default placement, and friction goes by materials.
+/// Makes bodies and joints of the scenario's kinds: links without mass become part of the link that
+/// they are fixed to, body frames stand upright at the default placement, and friction goes by
+/// materials.
 void assemble(Description description, ImportedWorld& world);
 
 /// A name that keys and variables can have: letters, digits and `_`; "::" becomes one `_`.
 std::string plain_name(const std::string& name);
 
-/// Where links, joints and models of these names begin in the text.
+/// The places where links, joints and models of these names begin in the text.
 class NamePlaces {
  public:
   explicit NamePlaces(const XmlOutline& outline);

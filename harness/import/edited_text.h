@@ -12,7 +12,7 @@ class EditedText {
  public:
   /// `source` is the caller's number of the text that `piece` was cut from at `offset`.
   void copy(std::string_view piece, std::size_t source, std::size_t offset);
-  /// A piece that stands in the place of what is at `offset`.
+  /// Puts a piece in the place of the text at `offset`.
   void put(std::string_view piece, std::size_t source, std::size_t offset);
 
   const std::string& text() const { return text_; }

@@ -50,7 +50,7 @@ struct ImportedJoint {
   std::size_t offset = 0;
 };
 
-/// What of one kind is in the file but not in the world.
+/// Elements of one kind that are in the file but not in the world.
 struct LeftOut {
   std::string what;  // "sensors"
   std::size_t count = 0;
@@ -67,7 +67,7 @@ struct ImportedWorld {
   std::optional<double> gravity_m_s2;
   std::vector<LeftOut> left_out;
   std::vector<std::string> files;        // that were read besides
-  std::vector<std::string> absent = {};  // places where one was looked for in vain
+  std::vector<std::string> absent = {};  // paths where a file was sought and not found
 };
 
 /// Was the library that reads the format there when this was built?

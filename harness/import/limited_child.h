@@ -16,10 +16,11 @@ struct ChildAnswer {
   std::string bytes;
 };
 
-/// What `work` gives in a process of its own, with 30 s and 3 GiB, in which nothing is said and
-/// nothing lasts: what a library makes of a hostile file does no harm here. With `opens_files`
-/// false the process can open none. `work` should throw nothing; what it throws is a crash. The
-/// process ends with the thread that called, however that ends, and when `stop` is raised.
+/// Runs `work` in a process of its own, with 30 s and 3 GiB, and returns its answer. The process
+/// prints nothing and leaves nothing behind, so a library that reads a hostile file does no harm
+/// here. With `opens_files` false the process can open none. `work` should throw nothing; an
+/// exception counts as a crash. The process ends with the calling thread, however that ends, and
+/// when `stop` is raised.
 ChildAnswer answer_of_child(const std::function<std::string()>& work, std::size_t most_bytes,
                             bool opens_files, const std::atomic<bool>* stop = nullptr);
 

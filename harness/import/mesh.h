@@ -15,7 +15,7 @@ namespace parallax::harness {
 
 inline constexpr std::size_t kMaxMeshBytes = 32U << 20;
 inline constexpr std::size_t kMaxMeshFaces = 300'000;
-/// A hull with more is replaced by one of so many of its corners.
+/// A hull with more corners is replaced by one with this number of its corners.
 inline constexpr std::size_t kMaxMeshCorners = 64;
 
 /// Corners of the convex hull of all that is in the file, in its frame. `extension` says the
@@ -31,7 +31,7 @@ struct MeshCorners {
   bool is_open = false;  // its faces close nothing in
 };
 
-/// What a hull adds to its mesh, or what it loses, where that is worth a word.
+/// A notable addition of a hull to its mesh, or a loss from it.
 struct MeshLoss {
   std::string what;  // a kind, as LeftOut's
   std::string of;    // which mesh, and how much

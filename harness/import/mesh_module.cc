@@ -29,7 +29,7 @@ MeshCorners faulty(std::string why) {
   return out;
 }
 
-/// What goes through the pipe: numbers, then the fault or the corners.
+/// The head of an answer in the pipe: numbers. The fault or the corners follow.
 struct AnswerHead {
   std::uint64_t fault_bytes = 0, corners = 0, faces = 0, hull_corners = 0;
   double off = 0.0, volume = 0.0, hull_volume = 0.0;

@@ -160,8 +160,8 @@ std::pair<std::size_t, double> farthest_of(const std::vector<Eigen::Vector3d>& c
   return found;
 }
 
-/// Of many corners those that lie farthest along the axes, so that the box round them is kept, and
-/// in `count` directions, evenly spread.
+/// Thins out corners. Keeps those farthest along the axes, so that the bounding box stays the same,
+/// and those farthest in `count` evenly spread directions.
 std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& corners, int count) {
   const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
   std::set<std::size_t> kept;

@@ -116,7 +116,7 @@ class MjcfImporter {
     }
   }
 
-  /// What has no name of its own gets one that nothing else has.
+  /// Appends underscores to a name until nothing else has it.
   std::string unused(std::string name) {
     while (!taken_.insert(plain_name(name)).second) name += "_";
     return name;
@@ -167,7 +167,7 @@ class MjcfImporter {
         add_geom(geom, places_.geom(i, k), link, side);
         continue;
       }
-      // What stands in the world by itself is a body of its own, with its own friction.
+      // A geom of the world becomes a body of its own, with its own friction.
       LinkDescription one = link;
       MjcfSide own = side;
       one.name = unused(geom.name.empty() ? fmt::format("static_{}", k) : geom.name);
@@ -288,7 +288,7 @@ class MjcfImporter {
     return hulls_.emplace(mesh, made.corners).first->second;
   }
 
-  /// What holds a body: a joint, what it is welded to, or nothing.
+  /// Adds what holds a body: its joint, or a weld if it has none. A free joint adds nothing.
   void add_joints(std::uint32_t i) {
     const MjcfBody& body = model_.bodies[i];
     if (body.is_static) return;
@@ -312,7 +312,7 @@ class MjcfImporter {
     out_.joints.push_back(std::move(one));
   }
 
-  /// Of the names that joints have in the file.
+  /// Appends underscores to a name until no joint in the file has it.
   std::string unused_joint(std::string name) const {
     const auto is_taken = [&](const MjcfJoint& joint) {
       return plain_name(joint.name) == plain_name(name);

@@ -141,7 +141,7 @@ bool is_mesh(const MjcfMesh& mesh) {
                      [&](std::uint32_t point) { return point < count; });
 }
 
-/// Of lists, and of what is in them by number; numbers of another kind may be anything.
+/// Checks the lists and the indices into them; other numbers may be anything.
 bool is_sound(const MjcfModel& model) {
   const auto is_body = [&](std::uint32_t body) { return body < model.bodies.size(); };
   for (std::size_t i = 1; i < model.bodies.size(); ++i) {

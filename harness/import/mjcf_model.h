@@ -10,8 +10,8 @@
 
 namespace parallax::harness {
 
-// What MuJoCo's compiler makes of a file in MJCF, as data that goes from the process that reads it
-// to this one. Numbers index the lists; body 0 is the world.
+// The model that MuJoCo's compiler makes of an MJCF file, as data that goes from the process that
+// reads it to this one. Numbers index the lists; body 0 is the world.
 
 /// A frame in that of the parent, or of the body.
 struct MjcfFrame {
@@ -73,7 +73,7 @@ struct MjcfMesh {
   std::vector<std::uint32_t> faces;  // three numbers of points for each
 };
 
-/// What there is of a kind that is not taken over.
+/// Elements of a kind that is not taken over.
 struct MjcfRest {
   std::string kind;  // "sensors"
   std::string tag;   // of its first element, or its section

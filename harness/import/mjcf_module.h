@@ -25,7 +25,7 @@ struct MjcfFile {
 /// a process that does nothing else.
 using ReadMjcf = bool(const char* version, const std::vector<MjcfFile>& files, MjcfModel& model);
 
-/// What the module says, in a process with limits (limited_child.h).
+/// Reads MJCF with the module, in a process with limits (limited_child.h).
 MjcfModel read_mjcf(const std::vector<MjcfFile>& files, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace parallax::harness

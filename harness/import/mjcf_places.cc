@@ -8,7 +8,7 @@ namespace parallax::harness {
 MjcfPlaces::MjcfPlaces(const MjcfText& text)
     : text_(text), outline_(outline_of(text.files.front().bytes)), bodies_(1) {
   std::vector<std::optional<std::size_t>> body_of;  // by element: the body that it is
-  std::size_t default_end = 0;                      // of what only says how others are
+  std::size_t default_end = 0;                      // end of the elements that only set defaults
   for (const XmlElement& element : outline_.elements) {
     auto& own = body_of.emplace_back();
     if (element.tag == "default") default_end = std::max(default_end, element.end);

@@ -29,8 +29,8 @@ bool is_word(std::string_view text) {
   });
 }
 
-/// What readers of XML take differently, beyond what outline_of refuses: characters that some take
-/// for spaces, and names of elements and attributes that are no plain words.
+/// Finds text that XML readers take differently, beyond what outline_of refuses: characters that
+/// some take for spaces, and names of elements and attributes that are not plain words.
 std::optional<TextFault> oddity(const std::string& text, const XmlOutline& outline) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -107,7 +107,7 @@ class FileShelf {
   std::set<std::string> read_, absent_;
 };
 
-/// Puts what is included in the place of what includes it.
+/// Replaces each include by the included text.
 class Includer {
  public:
   Includer(FileShelf& shelf, MjcfText& out) : shelf_(shelf), out_(out) {}
@@ -232,7 +232,7 @@ class FileNamer {
                      : TextFault{from.offset, fmt::format("in `{}`: {}", from.name, message)};
   }
 
-  /// The last word on where meshes are, as with the reader.
+  /// Notes where meshes are; the last `compiler` element counts, as with the reader.
   void note_compiler(const XmlOutline& outline) {
     for (const XmlElement& element : outline.elements) {
       if (element.tag != "compiler") continue;

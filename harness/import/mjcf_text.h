@@ -20,9 +20,9 @@ namespace parallax::harness {
 struct MjcfText {
   std::optional<TextFault> fault;   // then the rest says nothing
   std::vector<MjcfFile> files;      // the text, then the meshes
-  std::vector<LeftOut> left_out;    // of what was replaced or taken out
+  std::vector<LeftOut> left_out;    // elements that were replaced or removed
   std::vector<std::string> read;    // paths of files that were opened
-  std::vector<std::string> absent;  // paths where a file was looked for in vain
+  std::vector<std::string> absent;  // paths where a file was sought and not found
 
   /// Where in ImportInput::text that is, or is included; then `inside` says where there, as "in
   /// `parts/arm.xml`, line 3: ".
@@ -33,13 +33,13 @@ struct MjcfText {
   Place place_of(std::size_t offset) const;
   /// The same of an offset in `included`, without `inside`.
   std::size_t place_of_included(std::size_t offset) const;
-  /// What the reader says, with the names that the meshes' files have in the description.
+  /// The reader's message with mesh files named as in the description.
   std::string in_names_given(const std::string& said) const;
 
   struct Source {
     std::string name;  // as it was included; empty: the file itself
     std::string text;
-    std::size_t offset = 0;  // of what includes it, in ImportInput::text
+    std::size_t offset = 0;  // of the including element, in ImportInput::text
   };
   std::deque<Source> sources;                     // which stay where they are
   EditedText included, edited;                    // of the sources, of that text

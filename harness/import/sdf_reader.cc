@@ -235,7 +235,7 @@ class SdfReader {
     config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
     config.SetDeprecatedElementsPolicy(sdf::EnforcementPolicy::LOG);
     for (const fs::path& folder : input_.folders) config.AddURIPath("model://", folder.string());
-    // What IncludeGate did not find there is nowhere.
+    // Nothing else is searched: a file that IncludeGate did not find does not exist.
     config.SetFindCallback([](const std::string&) { return std::string(); });
     sdf::Root root;
     const sdf::Errors errors = root.LoadSdfString(input_.text, config);

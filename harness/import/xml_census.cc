@@ -57,7 +57,7 @@ class Census {
 
   void run() {
     const auto& all = outline_.elements;
-    std::size_t past = 0;  // the end of what is listed, or told, as a whole
+    std::size_t past = 0;  // the end of the last element that counts as a whole
     for (std::size_t i = 0; i < all.size(); ++i) {
       const XmlElement& element = all[i];
       if (element.offset < past) continue;

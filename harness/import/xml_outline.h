@@ -10,7 +10,7 @@ namespace parallax::harness {
 
 inline constexpr std::size_t kMaxImportBytes = std::size_t{8} << 20U;
 inline constexpr std::size_t kMaxImportDepth = 64;
-// Libraries take time that grows with the square of what is named.
+// The time that libraries take grows with the square of the number of named elements.
 inline constexpr std::size_t kMaxImportElements = 30'000;
 inline constexpr std::size_t kMaxImportParts = 1'000;
 

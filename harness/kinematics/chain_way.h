@@ -18,9 +18,10 @@ struct ChainWay {
 
   bool whole() const { return fault.empty(); }
   const JointVector& last() const { return samples.back(); }
-  /// Between the samples, by straight lines; `share` of the whole way, clamped to what there is.
+  /// The positions at a share of the whole way, by straight lines between the samples. The share is
+  /// clamped to the way.
   JointVector at(double share_of_way) const;
-  /// Change of the positions per share of the way.
+  /// The change of the positions per share of the way.
   JointVector slope(double share_of_way) const;
 
   double step_share = 1.0;  // of the way between samples; the last may be nearer

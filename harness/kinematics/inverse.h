@@ -8,7 +8,7 @@ namespace parallax::harness {
 
 struct InverseOptions {
   double tolerance_m = 1e-4, tolerance_rad = 1e-3;
-  /// A radian of the tool's turn weighs as much as so many metres.
+  /// The weight of a radian of the tool's turn, in metres.
   double radian_as_m = 0.3;
   int steps = 60;     // of one descent
   int restarts = 24;  // after the one from the given start
@@ -39,7 +39,7 @@ JointVector spread_positions(const SerialChain& chain, int index);
 InverseResult solve_inverse_from(const SerialChain& chain, const Eigen::Isometry3d& X_RT, int index,
                                  const InverseOptions& options = {});
 
-/// How far a pose is from another: metres, and then radians along the axis of the turn.
+/// The error of a pose against another: metres, and then radians along the axis of the turn.
 Eigen::Matrix<double, 6, 1> pose_error(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
 
 }  // namespace parallax::harness

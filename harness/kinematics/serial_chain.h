@@ -28,7 +28,7 @@ struct ChainJoint {
   double low = -1.0, high = 1.0;                      // stops, which include 0
 };
 
-/// What hangs on a joint up to the next one, at position 0.
+/// The mass that hangs on a joint, up to the next joint, at position 0.
 struct ChainMass {
   double mass_kg = 0.0;
   Eigen::Vector3d p_RC = Eigen::Vector3d::Zero();  // its centre in R [m]
@@ -40,7 +40,7 @@ struct ChainMass {
 class SerialChain {
  public:
   SerialChain() = default;
-  /// At least one joint, at most kMostChainJoints; `X_RT` at positions 0.
+  /// Takes at least one joint, at most kMostChainJoints; `X_RT` is the tool's pose at positions 0.
   SerialChain(std::vector<ChainJoint> joints, const Eigen::Isometry3d& X_RT);
 
   Eigen::Index size() const { return static_cast<Eigen::Index>(joints_.size()); }
@@ -48,13 +48,13 @@ class SerialChain {
 
   /// The tool in the root's frame.
   Eigen::Isometry3d tool(const JointVector& q) const;
-  /// For each joint, how what hangs on it has moved in R since positions 0: a pose X there is
+  /// The motions in R, since positions 0, of the parts that hang on each joint: a pose X there is
   /// motions[i] * X now.
   void motions(const JointVector& q, std::span<Eigen::Isometry3d> out) const;
   ChainJacobian jacobian(const JointVector& q) const;
 
-  /// What each joint has to give to hold the masses still [Nm or N], positive along its axis.
-  /// `masses` are one for each joint; `gravity_R` in the root's frame [m/s^2].
+  /// The torque or force with which each joint holds the masses still [Nm or N], positive along its
+  /// axis. `masses` has one entry for each joint; `gravity_R` is in the root's frame [m/s^2].
   JointVector holding_torques(const JointVector& q, std::span<const ChainMass> masses,
                               const Eigen::Vector3d& gravity_R) const;
 

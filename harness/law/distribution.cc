@@ -32,7 +32,7 @@ double triangular_mass(const Distribution& law, double value, bool above) {
   return above ? beyond : 1.0 - beyond;
 }
 
-/// The value with so much mass below (or above) it.
+/// The value with probability `mass` below (or above) it.
 double triangular_value(const Distribution& law, double mass, bool above) {
   const double width = law.upper - law.lower;
   const double at_mode = (law.mode - law.lower) / width;  // below the mode

@@ -10,7 +10,7 @@
 
 namespace parallax::harness {
 
-/// How one value of a start is distributed, before anything conditions it.
+/// The distribution of one value of a start, before anything conditions it.
 struct Distribution {
   enum class Kind : std::uint8_t { kUniform, kNormal, kTriangular, kChoice };
   Kind kind = Kind::kUniform;

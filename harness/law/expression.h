@@ -15,9 +15,10 @@ namespace parallax::harness {
 /// A formula over the values of a start: "0.2 + 1.03 * fill", "milk1.x + 0.1 < cup.x or fill >
 /// 0.5".
 ///
-/// In falling order of binding: numbers, names ("box.x"), min(a, b, ..), max, abs, sqrt, sin, cos,
-/// hypot and brackets; ^; - of one; * /; + -; < <= > >= == !=; not; and; or. Numbers and truths are
-/// kept apart, and comparisons do not chain. It has no state, so threads may share it.
+/// The syntax, in falling order of binding: numbers, names ("box.x"), min(a, b, ..), max, abs,
+/// sqrt, sin, cos, hypot and brackets; ^; unary -; * /; + -; < <= > >= == !=; not; and; or. Numbers
+/// and truths are kept apart, and comparisons do not chain. It has no state, so threads may share
+/// it.
 class Expression {
  public:
   enum class Kind : std::uint8_t { kNumber, kTruth };

@@ -55,7 +55,7 @@ class ExpressionParser {
     // The text may have been written with escapes; then its own end bounds the place.
     const auto length = source_.end - source_.begin;
     auto from = std::min<std::size_t>(at_, length);
-    // What ends too early is shown at its last word.
+    // A text that ends too early is shown at its last word.
     if (from == text_.size()) {
       while (from > 0 && (from == length || base::is_space(text_[from]))) --from;
     }
@@ -100,7 +100,7 @@ class ExpressionParser {
 
   void push(Operation operation, double number = 0.0, std::size_t index = 0) {
     out_->steps_.push_back({operation, number, index});
-    // What takes two leaves one.
+    // A binary operation replaces two values by one.
     const bool adds = operation == Operation::kPush || operation == Operation::kLoad;
     const bool keeps = operation == Operation::kNegate || operation == Operation::kNot ||
                        operation == Operation::kAbs || operation == Operation::kSqrt ||
@@ -316,7 +316,7 @@ class ExpressionParser {
       if (failed_) return Kind::kNumber;
       next();
       if (!need(disjunction(), Kind::kNumber, word, at)) return Kind::kNumber;
-      // Of more than two the first two become one.
+      // From the second argument on, each is combined with the result so far.
       if (++count > 1) push(found->operation);
     } while (token_ == ",");
     close();

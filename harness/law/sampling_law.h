@@ -53,7 +53,7 @@ struct SamplingLaw {
   std::vector<BodyArea> areas;
   std::vector<HalfPlane> half_planes;
   std::vector<Requirement> requirements;
-  /// What a reset gives variables that nothing draws: "table.x".
+  /// Reset values of variables that nothing draws: "table.x".
   std::map<std::string, double> constants;
 
   /// Does it say anything that uniform ranges do not?

@@ -124,7 +124,7 @@ std::optional<LogError> CsvLog::take(const Cell& cell, const std::string& name,
   };
   if (variable) {
     auto value = value_of(cell.text, reader.kind(*variable));
-    // What is of no such kind is refused by name.
+    // A value of another kind is refused with the name of its variable.
     return fine(
         take_value(reader, name, value ? *std::move(value) : Value(cell.text), entry, unread_));
   }

@@ -37,7 +37,7 @@ class LineSource {
   const std::atomic<bool>* stop_;
   std::size_t max_line_;
   std::string buffer_;
-  std::size_t begin_ = 0, seen_ = 0;  // of what is not given yet; how far it has no line end
+  std::size_t begin_ = 0, seen_ = 0;  // start of the bytes not given; end of those searched
   bool at_end_ = false;
   std::int64_t number_ = 0, bytes_ = 0;
   int error_ = 0;

@@ -21,11 +21,11 @@ struct LogEntry {
   bool has_state = false;
   ReportedValues values;
 
-  /// For the next line, with `variables` values.
+  /// Clears the entry for the next line, with `variables` values.
   void clear(std::size_t variables);
 };
 
-/// What is wrong with a line.
+/// A fault in a line of a log.
 struct LogError {
   std::size_t column = 1;  // of its first byte, from 1
   std::string text;        // "`t` is missing"
@@ -35,15 +35,15 @@ struct LogError {
 using ForeignNames = std::set<std::string, std::less<>>;
 inline constexpr std::size_t kMaxForeignNames = 1000;
 
-/// Puts a value where it belongs. What is wrong with it; empty: nothing. Of what the mapping does
-/// not ask for only the name is kept.
+/// Stores a value. Returns its fault; empty: none. For a variable that the mapping does not ask
+/// for, only the name is kept.
 std::string take_value(const ObservationReader& reader, std::string_view name, Value value,
                        LogEntry& entry, ForeignNames& foreign);
-/// "ok" and "failed". What is wrong with another word; empty: nothing.
+/// Stores "ok" or "failed". Returns the fault of another word; empty: none.
 std::string take_outcome(std::string_view word, LogEntry& entry);
 /// The name of an event as the model prints it: without blanks.
 std::string event_name(std::string_view text);
-/// What the entry lacks, once all of it was read; empty: nothing. `has_t`: there was a time.
+/// Names what the entry lacks after all of it was read; empty: nothing. `has_t`: there was a time.
 std::string incomplete(const LogEntry& entry, bool has_t);
 
 /// Reads `{"t": 1.5, "event": "Go(bTable)", "outcome": "ok"}` or `{"t": 1.6, "state": {..}}`.

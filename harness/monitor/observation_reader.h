@@ -16,7 +16,7 @@ namespace parallax::harness {
 /// Values of the variables that a mapping asks for, by number; none: not reported.
 using ReportedValues = std::vector<std::optional<Value>>;
 
-/// What a partial observation says of the compared fluents.
+/// The state of the compared fluents in a partial observation.
 struct SeenState {
   std::vector<std::int8_t> fluents;  // by number: 1 holds, -1 does not, 0 is not known or ignored
   /// Fluents that neither hold nor do not, and bodies in none of their regions: a state that no
@@ -38,7 +38,7 @@ class ObservationReader {
 
   const std::vector<std::string>& variables() const { return variables_; }
   std::optional<std::size_t> variable(std::string_view name) const;
-  /// What the variable has to be: a number, a flag (also 0 and 1) or a text.
+  /// The type required of the variable: a number, a flag (also 0 and 1) or a text.
   Kind kind(std::size_t variable) const { return kinds_[variable]; }
   bool fits(std::size_t variable, const Value& value) const;
   /// The variables that a fluent is read from.

@@ -7,7 +7,7 @@
 
 namespace parallax::harness {
 
-/// What is to be told at one time: "Go(bTable) begins", "left holds cup1".
+/// A remark at one time: "Go(bTable) begins", "left holds cup1".
 struct Mark {
   double time_s = 0.0;
   std::string text;

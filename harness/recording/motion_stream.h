@@ -18,14 +18,14 @@ namespace parallax::harness {
 inline constexpr double kFrameTime_s = 1e-3;
 inline constexpr double kFramePosition_m = 0.5e-3;
 inline constexpr double kFrameQuaternion = 1.0 / 4096.0;
-/// A place farther away is none.
+/// A place farther away is invalid [m].
 inline constexpr double kFarthest_m = 1e6;
 /// More of one simulation is not recorded, nor more than that at once: it goes in one line of the
 /// simulators' protocol.
 inline constexpr std::size_t kMaxMotionBytes = std::size_t{8} << 20U;
 inline constexpr std::size_t kMaxMotionAtOnce = std::size_t{1} << 19U;
 
-/// How a gripper and a body have to do with each other, as bits.
+/// The relations between a gripper and a body, as bits.
 enum Grip : std::uint8_t {
   kGripNearPad = 1,    // the pad that stands still touches it
   kGripFarPad = 2,     // the other one does
@@ -52,7 +52,7 @@ class MotionWriter {
   bool add(double time_s, std::span<const Pose> poses, std::span<const std::uint8_t> grips);
   /// The bytes since the last call.
   std::string take();
-  /// Why what is added is left out from some time on; empty: it is not.
+  /// The reason why frames are left out from some time on; empty: they are not.
   std::string fault() const;
 
  private:
@@ -73,9 +73,9 @@ class MotionCursor {
   /// `bytes` outlive the cursor.
   MotionCursor(std::string_view bytes, MotionShape shape);
 
-  /// The next frame. False at the end, or where the bytes are none of frames.
+  /// Reads the next frame. False at the end, or where the bytes are not a frame.
   bool next();
-  /// Why it ended before the end of the bytes; empty: it did not.
+  /// The reason why it ended before the end of the bytes; empty: it did not.
   const std::string& fault() const { return fault_; }
   std::size_t byte() const { return at_; }
 

@@ -4,7 +4,7 @@
 
 namespace parallax::harness {
 
-/// Where a body is and how it is turned: position [m], unit quaternion w-x-y-z.
+/// The pose of a body: position [m], unit quaternion w-x-y-z.
 struct Pose {
   std::array<double, 3> p = {0.0, 0.0, 0.0};
   std::array<double, 4> q = {1.0, 0.0, 0.0, 0.0};

@@ -19,15 +19,15 @@ struct RecordedShape {
   /// capsule not counted. What is left is 0 [m].
   std::array<double, 3> size = {0.0, 0.0, 0.0};
   Pose pose;  // in the body
-  /// Of a hull: its corners, in the frame of the pose, and which of them each face has.
+  /// For a hull: its corners, in the frame of the pose, and the corner numbers of each face.
   std::vector<std::array<double, 3>> corners = {};
   std::vector<std::array<std::uint32_t, 3>> faces = {};
   friend bool operator==(const RecordedShape&, const RecordedShape&) = default;
 };
 
-/// What a body is, for its colour: part of the building, moved by a joint of it, part of the robot,
-/// a pad of a gripper, something that can be carried, or a camera, which has no shape and looks
-/// along the x axis of its pose.
+/// The kind of a body, for its colour: part of the building, moved by a joint of the building, part
+/// of the robot, a pad of a gripper, something that can be carried, or a camera, which has no shape
+/// and looks along the x axis of its pose.
 enum class BodyKind : std::uint8_t { kFurniture, kDrawer, kRobot, kGripper, kItem, kCamera };
 
 struct RecordedBody {
@@ -42,7 +42,7 @@ struct RecordedBody {
   friend bool operator==(const RecordedBody&, const RecordedBody&) = default;
 };
 
-/// From a shoulder to a hand where the simulator has no bodies between them.
+/// A line from a shoulder to a hand where the simulator has no bodies between them.
 struct RecordedArm {
   std::string name;
   std::size_t from = 0, to = 0;                      // numbers of bodies
@@ -56,7 +56,7 @@ struct RecordedCone {
   friend bool operator==(const RecordedCone&, const RecordedCone&) = default;
 };
 
-/// What stays the same during a simulation.
+/// The data that stays the same during a simulation.
 struct RecordedScene {
   std::vector<RecordedBody> bodies;
   std::vector<std::string> grippers;

@@ -17,7 +17,7 @@ namespace parallax::harness {
 using RecordedValues =
     std::map<std::string, std::variant<bool, std::int64_t, double, std::string>, std::less<>>;
 
-/// What was done, when, and what came of it.
+/// An event, its time and its result.
 struct RecordedEvent {
   std::string name;                   // "Go(bTable)"
   double begin_s = 0.0, end_s = 0.0;  // simulated time since the start
@@ -58,14 +58,14 @@ class Playback {
   bool next() { return cursor_.next(); }
   double time_s() const { return cursor_.time_s(); }
   const MotionCursor& cursor() const { return cursor_; }
-  /// Where the body of this number is, in the world.
+  /// The pose of the body of this number in the world.
   Pose pose_of(std::size_t body) const {
     const auto& spec = scene_.bodies[body];
     if (!spec.moves) return spec.pose;
     if (spec.on) return composed(cursor_.poses()[index_of_[*spec.on]], spec.pose);
     return cursor_.poses()[index_of_[body]];
   }
-  /// How a gripper and a body have to do with each other: bits of Grip.
+  /// The relation between a gripper and a body: bits of Grip.
   std::uint8_t grip_of(std::size_t body, std::size_t gripper) const {
     const auto& spec = scene_.bodies[body];
     if (!spec.moves || spec.on) return 0;

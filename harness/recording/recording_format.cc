@@ -33,7 +33,7 @@ OrderedHeadJson values_json(const RecordedValues& values) {
   return out;
 }
 
-/// What is not in `before`; null for what is only there.
+/// The entries that are not in `before`, or differ there; null for those that are only there.
 OrderedHeadJson changes_json(const RecordedValues& before, const RecordedValues& after) {
   OrderedHeadJson::object_t out;
   for (const auto& [name, value] : after) {

@@ -12,14 +12,14 @@ namespace parallax::harness {
 /// A recording as the bytes of its file (docs/recording.md).
 std::string encode(const Recording& recording);
 
-/// What is wrong with a file, and at which byte.
+/// The fault in a file, and the byte at which it is.
 struct BadRecording {
   std::size_t byte = 0;
   std::string why;  // "the file ends within its head"
 };
 
-/// Takes nothing for granted: whatever the bytes are, there is an answer, in time and memory that
-/// are linear in their number. Frames of what it returns are whole.
+/// Decodes any bytes safely, in time and memory that are linear in their number. The frames of a
+/// returned recording are complete.
 std::variant<Recording, BadRecording> decode_recording(std::string_view bytes);
 
 }  // namespace parallax::harness

@@ -79,8 +79,8 @@ std::string polygon_fault(const std::vector<PlanePoint>& corners) {
   return {};
 }
 
-/// Of a simple polygon that goes round to the left: cuts off corners that no other corner is in
-/// (Meisters 1975, Polygons have ears).
+/// Cuts a simple polygon with counterclockwise corners into triangles: repeatedly cuts off a corner
+/// whose triangle holds no other corner (Meisters 1975, Polygons have ears).
 std::vector<std::array<PlanePoint, 3>> ears_of(std::vector<PlanePoint> corners) {
   std::vector<std::array<PlanePoint, 3>> out;
   const auto is_ear = [&](std::size_t i) {
@@ -99,7 +99,7 @@ std::vector<std::array<PlanePoint, 3>> ears_of(std::vector<PlanePoint> corners) 
     const auto n = corners.size();
     std::size_t ear = n;
     for (std::size_t i = 0; i < n && ear == n; ++i) {
-      // A corner on a straight line is none.
+      // A corner on a straight line is not a corner.
       if (cross_of(corners[(i + n - 1) % n], corners[i], corners[(i + 1) % n]) == 0.0) ear = i;
     }
     for (std::size_t i = 0; i < n && ear == n; ++i) {
@@ -253,7 +253,7 @@ std::optional<PlanePoint> Area::at(double u, double v) const {
   const double wanted = u * cumulative_.back();
   std::size_t part = 0;
   while (part + 1 < parts_.size() && wanted >= cumulative_[part]) ++part;
-  // What is left of `u` after the choice is uniform again.
+  // The remainder of `u` after the choice is uniform again.
   double left = wanted - (part == 0 ? 0.0 : cumulative_[part - 1]);
   PlanePoint point{};
   if (const auto* ring = std::get_if<RingShape>(&parts_[part].shape)) {

@@ -11,27 +11,28 @@ namespace parallax::harness {
 
 using PlanePoint = std::array<double, 2>;  // x, y [m]
 
-/// Between two circles; a disc where `inner_m` is 0.
+/// The area between two circles; a disc where `inner_m` is 0.
 struct RingShape {
   PlanePoint at{};
   double inner_m = 0.0, outer_m = 0.0;
 };
 
-/// What its corners go round, in either sense, without crossing or touching itself.
+/// A polygon with its corners in either sense, which does not cross or touch itself.
 struct PolygonShape {
   std::vector<PlanePoint> corners;
 };
 
 using PlaneShape = std::variant<RingShape, PolygonShape>;
 
-/// Why the shape is none: "goes through (1, 0) twice"; empty: it is one. Numbers are finite.
+/// Explains why the shape is invalid: "goes through (1, 0) twice"; empty: it is valid. Numbers are
+/// finite.
 std::string fault_of(const PlaneShape& shape);
 
 /// A part of the floor plan that need not be a rectangle: the union of shapes, which may overlap.
 /// With a height range beside it a disc is a cylinder, a polygon a prism.
 class Area {
  public:
-  /// None of the shapes has a fault; there is at least one.
+  /// The shapes must be free of faults, and there must be at least one.
   explicit Area(std::vector<PlaneShape> shapes);
 
   bool contains(const PlanePoint& point) const;

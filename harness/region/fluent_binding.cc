@@ -85,8 +85,8 @@ bool is_upright(const InsideBinding& kind, const Region& region, const std::stri
   return roll && pitch && std::cos(*roll) * std::cos(*pitch) >= std::cos(*kind.upright);
 }
 
-// What the kinds of conditions answer about a ground fluent of their symbol. FluentBinding, whose
-// declarations say what is asked, passes each question on to the kind that it has.
+// Answers of each kind of condition about a ground fluent of its symbol. FluentBinding, which
+// declares the questions, passes each of them on to its kind.
 
 /// Where the body is, in the region's frame; false: the state does not say all that is asked for.
 bool find_body(const Region& region, const std::string& name, const State& state,
@@ -111,7 +111,7 @@ double margin_in(const Interval& interval, double value) {
   return std::min(value - interval.lower, interval.upper - value) / interval.width();
 }
 
-/// Of a body that is expected in the region; none: a flag or a missing variable decides.
+/// The margin of a body that is expected in the region; none: a flag or a missing variable decides.
 std::optional<double> margin_of(const InsideBinding& kind, const GroundFluent& fluent,
                                 const State& state, const RegionMap& regions) {
   const Region* region = kind.region_of(fluent, regions);
@@ -195,7 +195,7 @@ std::optional<Reading> read(const IgnoredBinding&, const GroundFluent&, const St
   return std::nullopt;
 }
 
-/// Of the kinds that are about one variable.
+/// The variable of kinds that are about one variable.
 template <typename Kind>
 std::vector<std::string> variables(const Kind& kind, const GroundFluent& fluent,
                                    const RegionMap& /*regions*/) {
@@ -292,7 +292,7 @@ std::optional<std::string> reset_conflict(const IgnoredBinding&, const GroundFlu
   return std::nullopt;
 }
 
-/// Of the kinds whose variable has a value of its own after a reset.
+/// Adds the reset value of kinds whose variable has a value of its own after a reset.
 template <typename Kind>
 void add_reset_values(const Kind& kind, const GroundFluent& fluent, const RegionMap& /*regions*/,
                       State& state) {

@@ -25,7 +25,7 @@ GroundFluent ground_fluent(std::string_view text);
 /// "{0}.held" with the fluent's arguments put in. A number beyond the last one stays as it is.
 std::string with_arguments(std::string_view pattern, const GroundFluent& fluent);
 
-/// What a continuous state says of a fluent.
+/// The truth of a fluent in a continuous state.
 enum class Reading : std::uint8_t { kFails, kHolds, kNeither };
 
 /// Fluent F(.., r, ..) holds iff `body` lies in region r: argument number `region_argument` names
@@ -88,8 +88,8 @@ struct IgnoredBinding {
   std::string why;  // in the scenario's words; may be empty
 };
 
-/// What a fluent symbol means in the continuous world. Regions are those of the mapping, which was
-/// checked against the model's fluents.
+/// The meaning of a fluent symbol in the continuous world. Regions are those of the mapping, which
+/// was checked against the model's fluents.
 struct FluentBinding {
   std::string fluent;  // symbol name, "RobotIn"
   std::size_t arity = 0;
@@ -119,7 +119,7 @@ struct FluentBinding {
   /// It is about the start alone, and not compared later.
   bool at_start_only() const { return std::holds_alternative<BorderBinding>(condition); }
   bool is_ignored() const { return std::holds_alternative<IgnoredBinding>(condition); }
-  /// How the fluent puts a body into a region; null if it is about something else.
+  /// The binding that puts a body into a region; null if the fluent is about something else.
   const InsideBinding* inside() const { return std::get_if<InsideBinding>(&condition); }
 };
 

@@ -40,7 +40,7 @@ struct Region {
   std::string name;
   std::array<std::optional<Interval>, kRegionAxes.size()> bounds;  // by RegionAxis
   base::SourceRange source;
-  /// Where starts are drawn, on axes where that is narrower than the bounds.
+  /// The ranges that starts are drawn from, on axes where they are narrower than the bounds.
   std::array<std::optional<Interval>, kRegionAxes.size()> start;
   std::shared_ptr<const Area> area{}, start_area{};
   /// Body in whose frame the bounds are; empty: the world. `frame_start` is where it is at a reset
@@ -74,7 +74,7 @@ class RegionSet {
   std::vector<Region> regions_;
 };
 
-/// What a family of regions is asked for by the functions of a plan's binding table; all if empty.
+/// A family of regions, and the functions of a plan's binding table that ask for it; all if empty.
 struct RegionFamily {
   std::string name;
   RegionSet set;

@@ -8,7 +8,8 @@
 namespace parallax::harness {
 namespace {
 
-/// What the discrete state says of one body: the fluents that put it into a region or keep it out.
+/// The demands of the discrete state on one body: the fluents that put it into a region or keep it
+/// out.
 struct BodyDemand {
   struct Entry {
     const Region* region;

@@ -14,8 +14,8 @@ const Interval* find(const StartCuboid& start, const std::string& variable) {
   return found == start.dimensions.end() ? nullptr : &found->interval;
 }
 
-/// Of the part of the start cuboid's rectangle over x and y that is drawn from, over the part of
-/// the cell's rectangle that is in the cell; counted on a grid.
+/// The quotient of two shares, counted on a grid: the share of the start cuboid's rectangle over x
+/// and y that is drawn from, over the share of the cell's rectangle that is in the cell.
 double share_of_shape(const Region& region, const StartCuboid& start, const std::string& body) {
   constexpr int kSteps = 400;
   const auto part = [&](const Interval& x, const Interval& y, bool of_start) {

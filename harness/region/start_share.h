@@ -8,7 +8,7 @@
 
 namespace parallax::harness {
 
-/// How much of the cell that a body starts in its starts are drawn from.
+/// The share of a body's start cell that its starts are drawn from.
 struct StartShare {
   struct Axis {
     std::string axis;                 // "x"

@@ -19,7 +19,7 @@ struct SampledDimension {
   Interval interval;
 };
 
-/// Where a body starts that the region it is in has a shape for, on the plane of x and y.
+/// The start area of a body whose region has a shape on the plane of x and y.
 struct StartArea {
   std::string body;
   std::shared_ptr<const Area> area;

@@ -108,7 +108,8 @@ class Account {
 
   std::string when() const { return event_ ? "after " + event_name() : "at the start"; }
 
-  /// What differs where they part; where the end alone is compared, what differs there.
+  /// The fluents that differ where model and world part; where the end alone is compared, those
+  /// that differ there.
   const std::vector<DivergingFluent>& differences() const {
     const bool at_end = result_.comparison == Comparison::kFinal && !found_.fluents.empty();
     return at_end || found_.first.empty() ? found_.fluents : found_.first;
@@ -119,7 +120,7 @@ class Account {
     return point.plan_step && !point.succeeded;
   }
 
-  /// Of an executed plan: a step that the model has not, or not with this outcome.
+  /// Describes a step of an executed plan that the model does not have, or not with this outcome.
   std::string excluded_step(const std::string& name) const {
     const auto& step = found_.record.path->steps[*event_];
     if (found_.path->impossible) return name + " happens, and the model has no such event there";
@@ -212,8 +213,8 @@ class Account {
     }
   }
 
-  /// What was drawn of the start: for the bodies that take part, and for the rest where there is
-  /// room.
+  /// Writes the values drawn for the start: of the bodies that take part, and of the rest where
+  /// there is room.
   void start(std::string& out) const {
     Names involved, drawn;
     for (const auto& fluent : differences()) add_names(fluent.fluent, involved);

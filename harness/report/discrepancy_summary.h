@@ -10,13 +10,14 @@ namespace parallax::harness {
 /// Column at which what stands beside a label of a summary begins.
 inline constexpr std::size_t kSummaryColumn = 12;
 
-/// What parted model and world: "Go(r2) fails (path-blocked: by box), and the model says that it
-/// succeeds". Also of executed plans.
+/// Describes how model and world part: "Go(r2) fails (path-blocked: by box), and the model says
+/// that it succeeds". Also for executed plans.
 std::string discrepancy_sentence(const CampaignResult& result, const Discrepancy& found);
 
-/// What happened, with the event at which they part marked; what was predicted and observed of the
-/// fluents that differ there, and indented below them those that differ at the end; what was drawn
-/// of the start for the bodies that take part. At most 30 lines.
+/// Summarizes a discrepancy in at most 30 lines. They show the events, with the one at which model
+/// and world part marked; predicted and observed values of the fluents that differ there, and
+/// indented below them those that differ at the end; and the values drawn for the start of the
+/// bodies that take part.
 std::string discrepancy_summary(const CampaignResult& result, const Discrepancy& found,
                                 const ReportStyle& style);
 

@@ -7,12 +7,12 @@
 
 namespace parallax::harness {
 
-/// What two simulators make of the discrepancies of one cause.
+/// The answers of two simulators on the discrepancies of one cause.
 struct CauseOpinion {
   enum class Doubt : std::uint8_t {
     kModel,      // both disagree with it, wherever the other one answered
     kSimulator,  // only the first does, wherever the other one answered
-    kEither,     // now so, now so
+    kEither,     // sometimes one, sometimes the other
     kNoAnswer
   };
   std::string cause;
@@ -25,7 +25,7 @@ struct CauseOpinion {
 /// "model", "simulator", "either", "no-answer"
 std::string_view to_string(CauseOpinion::Doubt doubt);
 
-/// In the order in which the causes came.
+/// The opinions in the order in which the causes came.
 std::vector<CauseOpinion> opinions_by_cause(const SecondOpinion& opinion);
 
 /// A sentence for each cause, and one about the clean simulations.

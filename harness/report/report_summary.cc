@@ -210,7 +210,7 @@ class Summary {
                               fmt::join(parts, "; ")));
   }
 
-  /// Of runs that go on until everything was shown.
+  /// Reports the items shown by runs that go on until everything was shown.
   void shown() {
     if (result_.traces.empty() || !result_.traces.front().loop) return;
     const auto& cover = result_.traces.front().loop->cover;
@@ -225,7 +225,7 @@ class Summary {
     }
   }
 
-  /// Of executed plans with --keep-going: how often each cause led away from the model.
+  /// Reports how often each cause led executed plans away from the model, with --keep-going.
   void causes() {
     if (result_.traces.empty() || !result_.traces.front().loop) return;
     const auto& loop = *result_.traces.front().loop;
@@ -238,7 +238,7 @@ class Summary {
     }
   }
 
-  /// What weakens a claim is not left to the long account.
+  /// Lists the caveats of the claims, which must not be left to the long report alone.
   void notes() {
     std::map<std::string, std::vector<std::string>> traces_of;
     std::vector<std::string> order;
@@ -263,7 +263,7 @@ class Summary {
     if (bounds.size() > kMaxNotes) line("bound", fmt::format("{} more", bounds.size() - kMaxNotes));
   }
 
-  // Of what.
+  // The subject of the report.
 
   void context() {
     auto text = result_.scenario;

@@ -60,7 +60,7 @@ class TextReport {
     compared();
   }
 
-  /// What is compared and when, and what is not and why.
+  /// Lists the compared fluents by when they are compared, and the ignored ones with the reason.
   void compared() {
     using How = ComparedFluents::How;
     for (const auto& [how, label] : {std::pair{How::kEveryStep, "every step"},
@@ -139,7 +139,8 @@ class TextReport {
     out_ += text;
   }
 
-  /// What the claim is about: the discrete start and the continuous states that it stands for.
+  /// Describes the subject of the claim: the discrete start and the continuous states that it
+  /// stands for.
   void start(const TraceResult& trace) {
     if (const auto holds = trace.trace->holds(0); !holds.empty()) {
       line("start state", fmt::format("{}", fmt::join(holds, ", ")));
@@ -283,7 +284,7 @@ class TextReport {
     replay(found);
   }
 
-  /// What an executed plan did, and the first event that the model cannot follow.
+  /// Lists the steps of an executed plan, and marks the first event that the model cannot follow.
   void path_discrepancy(const Discrepancy& found) {
     const auto& path = *found.record.path;
     const auto& differs = *found.path;
@@ -370,7 +371,7 @@ class TextReport {
          4);
   }
 
-  /// Actions that ended otherwise than the model says: a failure that it predicts is none of them.
+  /// Lists actions that ended otherwise than the model says; predicted failures are not among them.
   void unusual_outcomes(const Discrepancy& found, const TraceResult& trace) {
     const auto& outcomes = found.record.outcomes;
     for (std::size_t i = 0; i < outcomes.size(); ++i) {

@@ -8,7 +8,7 @@
 
 namespace parallax::harness {
 
-/// What the accounts of a run for people have in common.
+/// Wording shared by the reports of a run for people.
 
 /// `text` in a colour of the terminal, as an SGR code: "1;31".
 std::string painted(std::string_view text, const char* color, bool is_on);

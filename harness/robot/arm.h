@@ -20,16 +20,18 @@ class Arm {
   Arm(const WorldSpec& world_spec, const ArmSpec& spec, std::uint32_t gripper, PhysicsWorld& world);
 
   void reset();
-  /// Straight to a point of the world, as the base stands now; a base that drives takes it along.
+  /// Moves the tool straight to a point of the world, as the base stands now; a base that drives
+  /// takes it along.
   void move_tool_to(const Eigen::Vector3d& target_W, const Motion& motion);
-  /// By `angle_rad` round the vertical through a point of the world, the wrist turning with it as
-  /// what it holds does; `motion` is in radians.
+  /// Moves the tool by `angle_rad` round the vertical through a point of the world. The wrist turns
+  /// with it, as a held body does; `motion` is in radians.
   void lead_tool_round(const Eigen::Vector3d& centre_W, double angle_rad, const Motion& motion);
-  /// Line of the pads against what the arm hangs on, the shorter way; 0: as it is by default.
+  /// Turns the line of the pads against what the arm hangs on, the shorter way; 0: as it is by
+  /// default.
   void turn_wrist_to(double yaw_rad, const Motion& motion);
-  /// Of a chain: the next straight motion turns the wrist so on its way.
+  /// For a chain: the next straight motion turns the wrist to `yaw_rad` on its way.
   void aim_wrist(double yaw_rad);
-  /// Of a chain: through positions of its joints.
+  /// For a chain: moves through positions of its joints.
   void swing_along(ChainWay way, const Motion& motion);
   void open_to(double opening_m, const Motion& motion);
   /// Presses the far pad towards the near one until the next opening.
@@ -45,9 +47,9 @@ class Arm {
   Eigen::Vector3d tool() const;  // in the world [m]
   double opening_m() const;
   double wrist_rad() const;
-  /// How the next straight motion of the tool leaves it.
+  /// The wrist heading at the end of the next straight motion of the tool.
   double wrist_goal_rad() const;
-  /// From the far pad to the near one once the wrist is at `wrist_rad`; world, unit.
+  /// The direction from the far pad to the near one with the wrist at `wrist_rad`; world, unit.
   Eigen::Vector3d pad_line(double wrist_rad) const;
   /// The middle of the palm, seen from the tool [m]; the same whatever way the wrist is turned.
   Eigen::Vector3d palm_offset() const;
@@ -57,7 +59,7 @@ class Arm {
   std::uint32_t gripper() const { return gripper_; }
   /// All bodies that move with the palm.
   const std::vector<BodyId>& bodies() const { return bodies_; }
-  /// What carries the palm, where it is a chain; else null.
+  /// The chain that carries the palm; null if it is a gantry.
   const PalmChain* chain() const { return std::get_if<PalmChain>(&carrier_); }
 
   void drive_motors();

@@ -14,12 +14,13 @@ namespace parallax::harness {
 /// joint on, the rest of the robot counts as in the way, too; what the first two carry sits in it.
 class ChainSweep {
  public:
-  /// As the robot stands and the arm hangs at construction. Overlaps of at most `tolerance_m` count
-  /// as touching; a negative one asks for so much room all round, but not from the robot itself.
+  /// Takes the robot and the arm as they stand at construction. Overlaps of at most `tolerance_m`
+  /// count as touching; a negative tolerance asks for that much room all round, but not from the
+  /// robot itself.
   ChainSweep(const PhysicsWorld& world, const PalmChain& chain, std::optional<BodyId> load,
              const BodyMask& ignored, const BodyMask& robot, double tolerance_m);
 
-  /// What meets what with the joints at `q`; the way is no part of it.
+  /// The obstacle that is met with the joints at `q`, if any; the way there is not examined.
   std::optional<Obstacle> at(const JointVector& q) const;
   /// Which part meets a body that has turned by `angle_rad` about the vertical through `centre_W`
   /// from where it is; not what the last joint carries, which leads it.

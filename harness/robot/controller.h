@@ -16,7 +16,7 @@
 
 namespace parallax::harness {
 
-/// What a controller acts on. All outlive the controller. One of the robots is there.
+/// The objects that a controller acts on. All outlive the controller. One of the robots is present.
 struct ControlContext {
   const WorldSpec& spec;
   const PhysicsWorld& world;
@@ -40,7 +40,7 @@ using ControllerFactory = std::unique_ptr<Controller> (*)(const ControlContext&,
 /// The factory of a name in controllers(), or null.
 ControllerFactory find_factory(std::string_view name);
 
-// Of the robot on a line; those of the mobile one stand in mobile_controller.h.
+// Controllers of the robot on a line; those of the mobile robot are in mobile_controller.h.
 std::unique_ptr<Controller> make_going(const ControlContext& context, const Arguments& arguments);
 std::unique_ptr<Controller> make_picking_up(const ControlContext& context,
                                             const Arguments& arguments);
@@ -74,7 +74,7 @@ class PhasedController : public Controller {
   const ControlContext& context() const { return context_; }
   const PhysicsWorld& world() const { return context_.world; }
   const std::string& name_of(BodyId id) const { return world().layout().bodies[id].name; }
-  /// At the end, or, while a phase begins, right behind it.
+  /// Adds a phase at the end, or, while a phase begins, right after that phase.
   void add(std::string_view name, std::function<double()> begin, std::function<bool()> done);
   /// Waits.
   void add_pause(std::string_view name, double duration_s);
@@ -87,7 +87,7 @@ class PhasedController : public Controller {
   /// `reason`, with the phase that was overdue, if one was.
   static std::string with_overdue(std::string reason, std::string_view overdue);
 
-  /// To be asked in each timestep of a descent: has the load come to stand on something?
+  /// Has the load come to stand on something? Call it in each timestep of a descent.
   bool supported(BodyId load);
 
   /// The judgement after the last phase. `overdue` names the first phase that met its limit.
@@ -105,10 +105,10 @@ class PhasedController : public Controller {
   StepsInARow support_;
 };
 
-/// How long a motion of `distance_m` may take before it counts as overdue [s].
+/// The time after which a motion of `distance_m` counts as overdue [s].
 double patience_s(double distance_m, const Motion& motion);
 
-/// How long pads may take to close from `opening_m` and then to squeeze for `hold_s` [s].
+/// The time allowed for pads to close from `opening_m` and then to squeeze for `hold_s` [s].
 double closing_time_s(double opening_m, double speed_m_s, double hold_s);
 
 /// "0.713 m", for reasons.

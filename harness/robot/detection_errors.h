@@ -10,21 +10,21 @@ namespace parallax::harness {
 /// Errors are cut off here, in root mean squares.
 inline constexpr double kDetectionCut = 2.0;
 
-/// By how much one estimate of a body is off.
+/// The error of one estimate of a body.
 struct DetectionError {
   Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();  // in the plane of the floor
   double turn_rad = 0.0;                              // about the vertical
 };
 
-/// What goes wrong when a camera looks for things, drawn from the seed of a run: the same seed and
+/// The errors of a camera that looks for things, drawn from the seed of a run: the same seed and
 /// the same questions in the same order give the same answers. Shifts and turns are normal and cut
-/// off at twice their root mean square; what is farther off is what misses and confusions are for.
+/// off at twice their root mean square; larger errors are left to misses and confusions.
 class DetectionErrors {
  public:
   explicit DetectionErrors(const DetectionSpec& spec) : spec_(spec) { reset(0); }
 
   void reset(std::uint64_t seed);
-  /// Of the next detection: the run's bias and a noise of its own.
+  /// The error of the next detection: the run's bias and a noise of its own.
   DetectionError next();
   bool missed() { return uniform() < spec_.miss_rate; }
   bool confused() { return uniform() < spec_.confusion_rate; }

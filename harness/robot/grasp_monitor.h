@@ -17,7 +17,7 @@ class GraspMonitor {
   GraspMonitor(const WorldSpec& spec, const PhysicsWorld& world);
 
   void reset();
-  /// After each timestep.
+  /// Call it after each timestep.
   void update();
 
   bool held(BodyId id) const;

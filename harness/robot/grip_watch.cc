@@ -8,7 +8,7 @@
 namespace parallax::harness {
 namespace {
 
-// Contacts of what is held come and go for single steps, and longer while a load bounces.
+// Contacts of a held body come and go for single steps, and longer while a load bounces.
 constexpr double kApart_s = 0.05;
 
 double friction_between(const FrictionSpec& friction, const std::string& a, const std::string& b) {

@@ -40,10 +40,10 @@ class GripWatch {
   void reset();
   /// Forgets the losses told so far.
   void begin_act() { losses_.clear(); }
-  /// After each timestep; one demand for each gripper.
+  /// Call it after each timestep, with one demand for each gripper.
   void update(const std::vector<GripDemand>& demands);
-  /// At the end of an act, when the world is observed: what no longer lies between both pads then
-  /// is lost, however short a time ago it left.
+  /// Call it at the end of an act, when the world is observed. A body that no longer lies between
+  /// both pads then is lost, however short a time ago it left.
   void end_act();
 
   /// Losses during the act, in the order of time.

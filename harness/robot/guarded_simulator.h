@@ -22,7 +22,7 @@ namespace parallax::harness {
 /// Margin by Coulomb's law above which a lost load is simulated again.
 inline constexpr double kSureMargin = 2.0;
 
-/// What a repetition with another solver says of a loss.
+/// The result of repeating a loss with another solver.
 enum class SolverAnswer : std::uint8_t { kLosesIt, kKeepsIt, kNone };
 
 /// One repetition: "half the step", "mujoco".
@@ -31,7 +31,8 @@ struct SolverRepetition {
   SolverAnswer answer = SolverAnswer::kNone;
 };
 
-/// The sentence of a loss that one of the repetitions does not have; empty if it stands.
+/// The sentence about a loss that does not occur in one of the repetitions; empty if the loss
+/// stands.
 std::string solver_loss_words(const std::string& body, double margin,
                               const std::vector<SolverRepetition>& repetitions);
 

@@ -17,7 +17,7 @@ class LineRobot {
   /// `spec.robot` names all roles.
   LineRobot(const WorldSpec& spec, PhysicsWorld& world);
 
-  /// All axes at rest where they are, with the force of their joints.
+  /// Brings all axes to rest where they are, with the force of their joints.
   void reset();
 
   void move_to(LineAxis axis, double target_m, const Motion& motion);
@@ -28,16 +28,16 @@ class LineRobot {
 
   /// The force of the squeeze that lasts [N]; 0: the fingers were opened, or never closed.
   double squeeze_n() const;
-  /// What the motion of an axis asks for [m/s2].
+  /// The acceleration that the motion of an axis asks for [m/s2].
   double asked_acceleration(LineAxis axis) const { return drive(axis).servo.asked_acceleration(); }
 
   double position_m(LineAxis axis) const;
   bool at_rest(LineAxis axis) const { return drive(axis).servo.at_rest(); }
-  /// How far `target_m` lies beyond the stops of the axis; 0 within them.
+  /// The distance of `target_m` beyond the stops of the axis; 0 within them.
   double beyond_stops_m(LineAxis axis, double target_m) const;
 
   double base_x_m() const;
-  /// Half way between the pads, in the world [m].
+  /// The point half way between the pads, in the world [m].
   Eigen::Vector3d tool() const;
   /// Gap between the inner faces of the pads.
   double opening_m() const;

@@ -40,7 +40,7 @@ Eigen::Vector3d MobileController::target_point() const {
   return {std::isnan(x) ? p.x() : x, std::isnan(y) ? p.y() : y, std::isnan(z) ? p.z() : z};
 }
 
-/// Of a gantry.
+/// The margin to the nearer limit of a gantry's reach [m]; below 0: out of reach.
 double MobileController::reach_margin_m(const Eigen::Vector3d& tool_W) const {
   const double distance_m = (tool_W - robot().shoulder(arm())).norm();
   const ArmSpec& spec = arm().spec();
@@ -176,7 +176,7 @@ void MobileController::add_wrist(double yaw_rad) {
   add(
       "turning",
       [this, yaw_rad] {
-        // What cannot turn here turns on its way to where it works.
+        // A wrist that cannot turn here turns on its way to where it works.
         if (!arm_ways(std::nullopt, 0.0).turns_on_the_spot(yaw_rad)) {
           arm().aim_wrist(yaw_rad);
           return 0.0;

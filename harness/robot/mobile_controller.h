@@ -32,7 +32,7 @@ class MobileController : public PhasedController {
   const Arguments& arguments() const { return arguments_; }
   double number(std::string_view name) const { return arguments_.number(name); }
 
-  /// How the empty or loaded tool moves; `max_speed_m_s` of the arguments.
+  /// The motion of the empty or loaded tool; `max_speed_m_s` of the arguments.
   Motion tool_motion() const;
   /// The argument `target.x` (`.y`, `.z`), or the place that the argument `place` names.
   Eigen::Vector3d target_point() const;
@@ -41,7 +41,8 @@ class MobileController : public PhasedController {
   /// can: within the reach of a gantry, or by some positions of the joints of a chain.
   bool require_reach(const Eigen::Vector3d& tool_W, double wrist_rad, const std::string& what);
   bool reaches(const Eigen::Vector3d& tool_W, double wrist_rad) const;
-  /// Of the arm and what it holds, against all but the robot and `touched`: what the arm is for.
+  /// The ways of the arm and its load. Obstacles are all bodies but the robot and `touched`, which
+  /// the arm is to touch.
   ArmWays arm_ways(std::optional<BodyId> touched, double tolerance_m) const;
   void add_tool_move(std::string_view name, std::function<Eigen::Vector3d()> target, Motion motion);
   /// The same, but over as soon as `done`.
@@ -57,8 +58,8 @@ class MobileController : public PhasedController {
   /// Closes with `force_n` until `gripped` has been true for `hold_s`.
   void add_squeeze(double force_n, double hold_s, std::function<bool()> gripped);
 
-  /// Of the tool, so that the near pad is to pass what is `width_m` wide at the clearance; the far
-  /// one closes up to it.
+  /// The tool position at which the near pad passes, at the clearance, a body that is `width_m`
+  /// wide; the far pad closes up to it.
   Eigen::Vector3d tool_beside(const Eigen::Vector3d& p_W, double width_m, double clearance_m,
                               double wrist_rad) const;
   /// `where`: "at the handle".

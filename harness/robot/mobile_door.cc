@@ -59,7 +59,7 @@ class MoveDoor final : public MobileController {
   Eigen::Vector3d way_in() const {
     return Eigen::AngleAxisd(swung_rad(), Eigen::Vector3d::UnitZ()) * handle_.approach.normalized();
   }
-  /// What is left of the arc, and a little more, so that the stop ends it.
+  /// The rest of the arc and a little more, so that the stop ends it.
   double arc_rad() const {
     const double beyond_rad = beyond_m_ / (grip_ - axis()).head<2>().norm();
     return left_rad() + std::copysign(beyond_rad, left_rad());
@@ -186,7 +186,7 @@ class MoveDoor final : public MobileController {
     return world().overlaps(gap, leaf_);
   }
 
-  /// What a pad touches with comes first in the list of its shapes.
+  /// The shape with which a pad touches: the first in its list.
   Probe face(const std::string& pad) const {
     const BodyId id = *world().layout().find_body(pad);
     return world().placed(id, world().layout().bodies[id].shapes.front());

@@ -12,7 +12,7 @@ namespace {
 constexpr double kPull_acceleration_m_s2 = 0.3;
 constexpr double kAtStop_m = 0.001;
 
-/// What opening and closing have in common: a slider with a handle, and the stop it is to go to.
+/// The common part of opening and closing: a slider with a handle, and the stop it is to go to.
 class MoveDrawer : public MobileController {
  protected:
   MoveDrawer(const ControlContext& context, const Arguments& arguments, bool opens)
@@ -25,7 +25,7 @@ class MoveDrawer : public MobileController {
 
   const JointSpec& joint() const { return world().layout().sliders[slider_]; }
   const HandleSpec& handle() const { return handle_; }
-  /// What is left of the drawer's way, signed.
+  /// The rest of the drawer's way, signed.
   double left_m() const { return goal_m_ - world().slider_position_m(slider_); }
   bool is_there() const { return std::abs(left_m()) <= number("stop_tolerance_m"); }
   /// The hand's way, which leads a little beyond the stop.

@@ -64,8 +64,8 @@ class Drive final : public MobileController {
     return true;
   }
 
-  /// How much of what was carried still reaches above the middle of its gripper [m]: below zero it
-  /// has slipped out.
+  /// Adds the height by which a carried body still reaches above the middle of its gripper [m];
+  /// below zero it has slipped out.
   void add_grip(State& margins) {
     for (const auto& [arm, load] : loads_) {
       const double above_m = world().bounds(load).high.z() - arm->tool().z();

@@ -42,7 +42,7 @@ class PickUp final : public MobileController {
     if (wrist > 0.5 * M_PI) wrist -= M_PI;
     if (wrist <= -0.5 * M_PI) wrist += M_PI;
     const Eigen::Vector3d grasp_W = *perception().believed(object_) + turn * grasp_.p_BG;
-    // What joints do not reach one way round they may reach the other.
+    // A grasp that the joints do not reach one way round may be within reach the other.
     const double other = wrist > 0.0 ? wrist - M_PI : wrist + M_PI;
     if (!reaches(target_for(grasp_W, wrist), wrist) && reaches(target_for(grasp_W, other), other)) {
       wrist = other;
@@ -53,12 +53,13 @@ class PickUp final : public MobileController {
     add_phases(wrist, target_ - number("standoff_m") * way_in());
   }
 
-  /// Of the tool: the near pad passes at the clearance; the far one closes up to it.
+  /// The tool position for a grasp: the near pad passes at the clearance; the far one closes up to
+  /// it.
   Eigen::Vector3d target_for(const Eigen::Vector3d& grasp_W, double wrist) const {
     return tool_beside(grasp_W, grasp_.width_m, clearance(), wrist);
   }
 
-  /// Of each pad before it closes; no more than the gripper opens.
+  /// The clearance of each pad before it closes; no more than the gripper opens.
   double clearance() const {
     return std::min(number("clearance_m"), 0.5 * (arm().spec().opening_m - grasp_.width_m));
   }

@@ -11,7 +11,7 @@
 
 namespace parallax::harness {
 
-/// What the judgements of controllers allow for, and proofs about them rest on.
+/// Tolerances of the controllers' judgements, which proofs about them rest on.
 inline constexpr double kParkedWithin_m = 0.03;       // of the tool from where it is carried
 inline constexpr double kTorsoTolerance_m = 0.005;    // of the height that it was to go to
 inline constexpr double kTurnStep_rad = 0.035;        // between the headings that a drive tries
@@ -41,8 +41,8 @@ class MobileBase {
   void turn_to(double yaw_rad, const Motion& motion);  // the shorter way
   void brake();
   bool at_rest() const { return line_.at_rest() && turn_.at_rest(); }
-  /// Of a point of the world that the base carries. The relief of the floor shakes it by the square
-  /// of the speed.
+  /// The accelerations of a point of the world that the base carries. The relief of the floor
+  /// shakes it with the square of the speed.
   AskedAcceleration asked_acceleration(const Eigen::Vector3d& p_W) const;
 
   PlanarPose pose() const;
@@ -70,7 +70,7 @@ class MobileRobot {
  public:
   MobileRobot(const WorldSpec& spec, PhysicsWorld& world);
 
-  /// All motors at rest where things are.
+  /// Brings all motors to rest at the present positions.
   void reset();
   void brake_all();
   /// Sets the motors for the next timestep.
@@ -96,7 +96,7 @@ class MobileRobot {
   /// Is the tool where parking leaves it?
   bool parked(const Arm& arm) const;
   bool open(const Arm& arm) const;
-  /// Of the arm's tool, at most: an arm may move it any way.
+  /// Upper bounds for the accelerations of the arm's tool: an arm may move it in any direction.
   AskedAcceleration asked_acceleration(const Arm& arm) const;
 
   const MobileRobotSpec& spec() const { return spec_; }

@@ -199,7 +199,7 @@ void MotionRecorder::fill_grips(BodyId id, std::size_t index) {
     if (touch.near_pad(gripper)) grip |= kGripNearPad;
     if (touch.far_pad(gripper)) grip |= kGripFarPad;
     if (grasp_.held_by(gripper, id)) grip |= kGripHeld;
-    // Of what no gripper touches it says nothing that the place does not.
+    // Support matters only for a body that a gripper touches; for others the place tells as much.
     if (grip != 0 && touch.support) grip |= kGripSupported;
     grips_[index * grippers_ + g] = static_cast<std::uint8_t>(grip);
   }

@@ -28,13 +28,13 @@ class MotionRecorder {
   /// 0: nothing is recorded.
   void set_interval(double interval_s);
   bool is_on() const { return every_ > 0; }
-  /// After a reset: the first frame.
+  /// Records the first frame after a reset.
   void begin();
-  /// After each timestep.
+  /// Call it after each timestep.
   void step() {
     if (every_ > 0 && ++steps_ % every_ == 0) add();
   }
-  /// What was recorded since the last call, with a frame of now.
+  /// Returns the motion recorded since the last call, with a frame of now.
   RecordedMotion take();
 
  private:

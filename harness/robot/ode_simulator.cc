@@ -128,7 +128,7 @@ struct OdeSimulator::Impl {
     if (line) line->drive_motors();
     if (mobile) mobile->drive_motors();
   }
-  /// What the grippers were told for the step that was made.
+  /// The demands on the grippers for the step that was made.
   const std::vector<GripDemand>& demands() {
     demands_made.clear();
     if (line) {

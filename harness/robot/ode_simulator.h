@@ -39,10 +39,11 @@ class OdeSimulator final : public Simulator {
   void watch(Watcher watcher, void* context);
 
   const PhysicsWorld& world() const;
-  /// Of the camera of a mobile robot that has looked at something.
+  /// The gaze of a mobile robot's camera that has looked at something.
   std::optional<Gaze> gaze() const;
   const StepStatistics& statistics() const;
-  /// What left the grippers, although they squeezed, and what they hold.
+  /// The watch on bodies that left the grippers, although they squeezed, and on those that they
+  /// hold.
   const GripWatch& grips() const;
   void measure_times(bool on);
 

@@ -197,8 +197,8 @@ double PalmChain::way_done() {
   return ahead_.dot(mode_ == Mode::kTurn ? error.tail<3>() : error.head<3>());
 }
 
-/// Of the joints, on a way of which a share passes per second. Where a little of the way turns a
-/// joint far, or the arm is not where the way has it, it goes slower.
+/// The rates of the joints on a way of which `share_per_s` passes per second. The arm goes slower
+/// where a little of the way turns a joint far, or where it is off the way.
 JointVector PalmChain::led_rates(double share, double share_per_s, double off) const {
   return bounded(way_.slope(share) * share_per_s, kMostRate) *
          std::clamp((kOffWay - off) / (kOffWay - kOnWay), 0.0, 1.0);

@@ -20,30 +20,30 @@ class PalmChain {
   PalmChain(const WorldSpec& spec, const ArmSpec& arm, PhysicsWorld& world);
 
   void reset();
-  /// Straight to a point of the world, as the robot stands now. Where the chain cannot follow the
-  /// whole way, as far as it can.
+  /// Leads the tool straight to a point of the world, as the robot stands now. Where the chain
+  /// cannot follow the whole way, it goes as far as it can.
   void lead_to(const Eigen::Vector3d& target_W, const Motion& motion);
-  /// By `angle_rad` round the vertical through a point of the world, the wrist turning with it, as
-  /// far as the chain can follow; `motion` is in radians.
+  /// Leads the tool by `angle_rad` round the vertical through a point of the world, the wrist
+  /// turning with it, as far as the chain can follow; `motion` is in radians.
   void lead_round(const Eigen::Vector3d& centre_W, double angle_rad, const Motion& motion);
   /// The positions of the joints on such a way of the upright tool, from those that have it at
   /// `from_W` with the wrist turned to `wrist_rad`.
   ChainWay arc_way(const JointVector& start, const Eigen::Vector3d& from_W, double wrist_rad,
                    const Eigen::Vector3d& centre_W, double angle_rad,
                    const ChainCheck& check) const;
-  /// Through positions of all joints, whatever way the tool takes; `motion` is that of the joint
-  /// which turns farthest. At the end the wrist is turned as before.
+  /// Moves through positions of all joints, whatever way the tool takes; `motion` is that of the
+  /// joint which turns farthest. At the end the wrist is turned as before.
   void swing_along(ChainWay way, const Motion& motion);
-  /// The shorter way, against the chain's root.
+  /// Turns the wrist the shorter way, against the chain's root.
   void turn_to(double yaw_rad, const Motion& motion);
-  /// The next line turns the wrist so, on its way.
+  /// The next line turns the wrist to `yaw_rad` on its way.
   void aim_wrist(double yaw_rad);
   void brake();
   bool at_rest() const { return along_.at_rest(); }
-  /// Of the tool against the root, at most [m/s2].
+  /// An upper bound on the acceleration of the tool against the root [m/s2].
   double asked_acceleration() const;
   double wrist_rad() const;
-  /// How lines leave it.
+  /// The wrist heading at the end of a line.
   double wrist_goal_rad() const { return wrist_goal_rad_; }
   void drive_motors();
 
@@ -53,12 +53,12 @@ class PalmChain {
   /// The pose of the upright tool at a point of the world with the wrist turned so, in the root's
   /// frame.
   Eigen::Isometry3d upright(const Eigen::Vector3d& tool_W, double wrist_rad) const;
-  /// Can the tool be there, with the wrist turned so? Looked for from where the joints are now.
+  /// Can the tool be there, with the wrist turned so? The search begins at the present positions.
   InverseResult reach(const Eigen::Vector3d& tool_W, double wrist_rad) const;
 
  private:
   enum class Mode : std::uint8_t { kLine, kTurn, kSwing, kArc };
-  /// In metres of the tool's line or in radians of its turn.
+  /// Starts a motion along `way`: in metres of the tool's line or in radians of its turn.
   void start(ChainWay way, const Eigen::Isometry3d& goal, const Motion& motion);
   double way_done();
   JointVector led_rates(double share, double share_per_s, double off) const;

@@ -27,7 +27,7 @@ class PalmGantry {
   void brake();
   bool at_rest() const;
   double wrist_rad() const { return world_.gantry_yaw_rad(gantry_); }
-  /// Of the tool against what the gantry hangs on [m/s2].
+  /// The acceleration of the tool against what the gantry hangs on [m/s2].
   double asked_acceleration() const {
     return arc_ ? arc_->asked_acceleration() : line_.asked_acceleration();
   }

@@ -11,7 +11,7 @@
 
 namespace parallax::harness {
 
-/// What the robot believes of one body. The position moves along with the body that `frame` names.
+/// The robot's belief about one body. The position moves along with the body that `frame` names.
 struct Belief {
   bool perceived = false;  // the last look for it found it
   bool located = false;
@@ -21,12 +21,12 @@ struct Belief {
   double yaw_rad = 0.0;
 };
 
-/// How well a body was seen.
+/// The quality of a look at a body.
 struct Sighting {
   int points = 0;         // tried
   int seen = 0;           // in the cone and not hidden
   std::string hidden_by;  // what hid a point, if something did
-  // Of the origin, exact but for what the view does; only with seen > 0.
+  // The origin, exact but for what the view does; only with seen > 0.
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
 };
 
@@ -70,7 +70,7 @@ class Perception {
   std::optional<double> believed_bottom_m(BodyId id) const;
 
   Eigen::Vector3d place_in_world(const PlaceSpec& place) const;
-  /// What free bodies are kinds of.
+  /// The free bodies of a kind.
   std::vector<BodyId> bodies_of_kind(const std::string& kind) const;
 
  private:
@@ -80,7 +80,7 @@ class Perception {
   /// point in its hollow, that point. `p_B` is in the body's frame.
   Eigen::Vector3d middle_of_chord(const Eigen::Vector3d& from, const Eigen::Vector3d& p_B,
                                   BodyId id) const;
-  /// What is believed of `id` where `like` was seen.
+  /// Stores the belief about `id`, located where `like` was seen.
   void store(BodyId id, BodyId like, const Eigen::Vector3d& p_W, double yaw_rad,
              const std::string& frame);
   Eigen::Vector3d from_frame(const std::string& frame, const Eigen::Vector3d& p_F) const;

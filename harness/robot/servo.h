@@ -24,7 +24,7 @@ double nominal_time_s(double distance_m, const Motion& motion);
 /// Velocity command of one driven axis, advanced once per timestep.
 class AxisServo {
  public:
-  /// At rest at `position_m`, and keeps it.
+  /// Comes to rest at `position_m` at once, and keeps it.
   void reset(double position_m);
   void move_to(double target_m, const Motion& motion);
   /// Comes to rest with the acceleration of the last motion and keeps the place reached.
@@ -35,10 +35,10 @@ class AxisServo {
   /// The command for the next timestep, from the measured position and rate of the axis.
   double next_velocity(double position_m, double rate_m_s, double timestep_s);
 
-  /// At rest: the last motion or braking is over.
+  /// Is the last motion or braking over?
   bool at_rest() const { return mode_ == Mode::kHold; }
   bool is_pushing() const { return mode_ == Mode::kPush; }
-  /// How fast its velocity may change; 0 at rest.
+  /// The rate at which its velocity may change; 0 at rest.
   double asked_acceleration() const { return at_rest() ? 0.0 : motion_.acceleration_m_s2; }
   /// The last command.
   double asked_velocity() const { return command_m_s_; }
@@ -59,9 +59,9 @@ class AxisServo {
 /// The way along the line is an AxisServo's; what lies beside the line is taken back in proportion.
 class LineServo {
  public:
-  /// At rest at `position`, and keeps it.
+  /// Comes to rest at `position` at once, and keeps it.
   void reset(const Eigen::Vector3d& position);
-  /// From where it is (as measured) straight to `target`.
+  /// Moves straight from the measured position to `target`.
   void move_to(const Eigen::Vector3d& position, const Eigen::Vector3d& target,
                const Motion& motion);
   void brake() { along_.brake(); }
@@ -81,17 +81,17 @@ class LineServo {
 /// beside it is taken back in proportion.
 class ArcServo {
  public:
-  /// From where it is (as measured) by `angle_rad` round `centre`, at its height; `motion` is in
+  /// Moves from the measured position by `angle_rad` round `centre`, at its height; `motion` is in
   /// radians.
   void move_round(const Eigen::Vector3d& position, const Eigen::Vector3d& centre, double angle_rad,
                   const Motion& motion);
   void brake() { along_.brake(); }
   Eigen::Vector3d next_velocity(const Eigen::Vector3d& position, double timestep_s);
   bool at_rest() const { return along_.at_rest(); }
-  /// How far it has turned since the motion began, and how fast it is to turn; by the last command.
+  /// The angle turned since the motion began, and the commanded rate; by the last command.
   double turned_rad() const { return turned_rad_; }
   double rate_rad_s() const { return rate_rad_s_; }
-  /// Of the point, along the circle and towards its centre together.
+  /// The acceleration of the point, along the circle and towards its centre added up.
   double asked_acceleration() const {
     return start_.head<2>().norm() * (along_.asked_acceleration() + rate_rad_s_ * rate_rad_s_);
   }

@@ -13,7 +13,7 @@
 
 namespace parallax::harness {
 
-/// Why a tool cannot be led straight from one point to another.
+/// The reason why a tool cannot be led straight from one point to another.
 struct WayFault {
   std::optional<Obstacle> hit;
   std::string unfollowed;  // else: why the joints cannot follow; "`elbow` at its stop"
@@ -22,7 +22,7 @@ struct WayFault {
   std::string text(const char* meets = "meets") const;
 };
 
-/// Asked of a straight stretch, both ends in the world.
+/// A test of a straight stretch, both ends in the world.
 using StretchTest =
     std::function<std::optional<WayFault>(const Eigen::Vector3d&, const Eigen::Vector3d&)>;
 
@@ -59,12 +59,12 @@ class ArmWays {
                                 double angle_rad, BodyId led);
   /// Can the joints follow all the corners in a row, from where they are?
   std::optional<WayFault> follow(const std::vector<Eigen::Vector3d>& corners) const;
-  /// Of a chain: ways of all joints at once to a posture that has the tool there, one after the
-  /// other, on which no link meets anything and a hand that holds something leans little. Empty:
-  /// none was found.
+  /// For a chain: consecutive ways of all joints at once to a posture that has the tool there. On
+  /// these no link meets anything, and a hand that holds something leans little. Empty: none was
+  /// found.
   std::vector<ChainWay> swings(const Eigen::Vector3d& to) const;
-  /// Of a chain: can the wrist be turned so where the tool is, with nothing in the way? Others turn
-  /// about the axis of the palm.
+  /// For a chain: can the wrist turn to `wrist_rad` where the tool is, with nothing in the way?
+  /// Others turn about the axis of the palm.
   bool turns_on_the_spot(double wrist_rad) const;
 
  private:

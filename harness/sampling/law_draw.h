@@ -35,7 +35,7 @@ class LawDraw {
   std::optional<State> start_at(std::span<const double> point,
                                 std::vector<std::int64_t>* refusals) const;
 
-  /// What is asked of the values, for people: "`cup.x > 1`".
+  /// The conditions on the values, for people: "`cup.x > 1`".
   std::vector<std::string> conditions() const;
   /// The law in words, one entry each: "box.mass normal with mean 1 and sd 0.05 in 0.8 to 1.2".
   const std::vector<std::string>& words() const { return words_; }

@@ -82,7 +82,7 @@ double Sampler::rim_share() const {
 DrawnStart Sampler::draw_counting(const DrawKey& key, std::vector<std::int64_t>* refusals) const {
   const CounterRng rng(key);
   if (law_) {
-    // With one start in a thousand candidates it takes so many once in 10^43 draws.
+    // If one candidate in a thousand is a start, this number does not suffice once in 10^43 draws.
     constexpr std::int64_t kMostCandidates = 100'000;
     std::vector<double> point(law_->coordinates());
     for (std::int64_t refused = 0; refused < kMostCandidates; ++refused) {

@@ -8,8 +8,8 @@ namespace parallax::harness {
 namespace {
 
 constexpr std::size_t kFewest = 8;  // points before a surrogate is trusted
-// Candidates: so many anywhere, near the best point, far from it in a few coordinates only, and at
-// the cube's boundary; then steps from the best of them.
+// Numbers of candidates: anywhere, near the best point, far from it in a few coordinates only, and
+// at the cube's boundary; then steps from the best of them.
 constexpr std::size_t kAnywhere = 100, kNear = 60, kInFewCoordinates = 60, kAtBoundary = 20;
 constexpr std::size_t kSteps = 40;
 
@@ -74,7 +74,7 @@ std::vector<UnitPoint> ExpectedImprovementStrategy::propose(const SearchHistory&
     margins.push_back(history[number].margin);
     worst = std::max(worst, margins.back());
   }
-  // What was no start is no place to look at: it stands there as the worst that was seen.
+  // An invalid start enters with the worst margin seen, so that the search keeps away from it.
   for (const auto& evaluation : history.all()) {
     if (seen.size() > kMostPoints) break;
     if (evaluation.kind != EvaluationKind::kInvalid) continue;

@@ -23,7 +23,7 @@ constexpr double kExploringDefence = 0.1;  // share of the law of starts while e
 constexpr std::int64_t kStages = 60;       // of exploring, at most
 constexpr std::size_t kMostKept = 2'000;
 constexpr double kFirstShare = 0.6;
-// Of what exploring leaves, for budgets of kUsual runs; of larger ones less.
+// Shares of the runs left after exploring, for budgets up to kUsual runs; less for larger ones.
 constexpr double kFirstBatch = 0.03, kSecondBatch = 0.05, kUsual = 3'500.0;
 constexpr double kErrorAbove = 0.97;  // of the whole error
 constexpr double kFirstSpread = 4.0;
@@ -132,7 +132,7 @@ class ImportanceSampling {
     return law;
   }
 
-  /// Until there are so many runs.
+  /// Draws from the law until `last` runs are made.
   template <typename Take>
   bool draw(DefensiveLaw& law, std::int64_t last, Take take) {
     std::vector<Answer> drawn;

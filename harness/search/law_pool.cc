@@ -57,7 +57,7 @@ std::optional<NormalMixture> LawPool::fit(SearchRng& rng) const {
                            [](const Point& one) { return one.margin < 0.0; }) -
       points_.begin());
   auto count = std::max(found, std::min(points_.size(), enough));
-  // What is as bad as anything is no direction.
+  // Points as bad as the worst give no direction.
   while (count > found && points_[count - 1].margin >= worst_) --count;
   if (count == 0) return std::nullopt;
   auto law = NormalMixture::fit(best(count), rng);

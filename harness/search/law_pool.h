@@ -20,8 +20,8 @@ struct DefensiveLaw {
   }
 };
 
-/// What was drawn from several laws, weighed as if all of it were from their mean (Veach and Guibas
-/// 1995; Cornuet, Marin, Mira and Robert 2012), and laws that are fitted to the best of it.
+/// The draws from several laws, weighted as if all were from the laws' mean (Veach and Guibas 1995;
+/// Cornuet, Marin, Mira and Robert 2012), and laws that are fitted to the best draws.
 class LawPool {
  public:
   /// Keeps about `kept` points of the least margins.

@@ -125,7 +125,7 @@ std::vector<NormalMixture::Part> NormalMixture::begun(const std::vector<Weighted
       nearest[i] = parts.size() == 1 ? away : std::min(nearest[i], away);
     }
   }
-  // Each begins with the spread of what is nearest to it.
+  // Each component begins with the spread of the points nearest to it.
   std::vector<std::vector<double>> covariances(count, std::vector<double>(d * (d + 1) / 2));
   std::vector<double> weights(count);
   for (const auto& one : points) {

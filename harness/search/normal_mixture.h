@@ -16,9 +16,9 @@ struct WeightedPoint {
 /// A sum of normal laws, each with all its correlations.
 class NormalMixture {
  public:
-  /// By expectation maximization, with as many parts, up to four, as Schwarz's criterion takes
-  /// (1978). Each part is made somewhat wider than it is fitted, as tails that are too short cost
-  /// more than wide ones. The points must not be empty.
+  /// Fits a mixture by expectation maximization, with as many parts, up to four, as Schwarz's
+  /// criterion takes (1978). Each part is made somewhat wider than it is fitted, as tails that are
+  /// too short cost more than wide ones. The points must not be empty.
   static NormalMixture fit(const std::vector<WeightedPoint>& points, SearchRng& rng);
 
   /// Makes `other` that share of the whole.

@@ -6,7 +6,7 @@
 
 namespace parallax::harness {
 
-/// What both methods need of an evaluator: counts, and an end where hardly any start is valid.
+/// The evaluator of both methods, with counts, and an end where hardly any start is valid.
 class RareEventBatches {
  public:
   RareEventBatches(const BatchEvaluator& evaluate, RareEventResult& result)

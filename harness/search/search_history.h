@@ -44,11 +44,11 @@ class SearchHistory {
   /// Numbers of the least margins, in their order; at most kLeading.
   const std::vector<std::size_t>& leading() const { return leading_; }
   static constexpr std::size_t kLeading = 512;
-  /// All margins are the same, so they give no direction.
+  /// Are all margins the same? Then they give no direction.
   bool is_flat() const { return flat_; }
   /// Points that were no valid starts.
   std::size_t invalid() const { return invalid_; }
-  /// How likely a point is a valid start, by its neighbours; 1 where none was invalid yet.
+  /// The estimated validity of a point as a start, by its neighbours; 1 where none was invalid yet.
   double validity(const UnitPoint& point) const;
 
  private:

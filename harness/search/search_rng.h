@@ -17,7 +17,7 @@ class SearchRng {
     state_ += 0x9e3779b97f4a7c15ULL;
     return mix64(state_);
   }
-  /// In [0, 1), 53 bits.
+  /// A uniform number in [0, 1) with 53 bits.
   double uniform() { return static_cast<double>(bits() >> 11U) * 0x1.0p-53; }
   /// Standard normal (Box and Muller 1958).
   double normal() {

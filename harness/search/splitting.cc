@@ -50,7 +50,7 @@ class Population {
     for (std::size_t i = 0; i < particles_.size(); ++i) changing_.push_back(i);
   }
 
-  /// What it wants to have simulated next; nothing: it is done.
+  /// Returns the points to simulate next; none: it is done.
   std::vector<UnitPoint> wanted() {
     while (!changing_.empty()) {
       if (begun_ && made_ == moves_) {
@@ -193,8 +193,8 @@ RareEventResult estimate_by_splitting(const RareEventOptions& options,
       return result;
     }
     if (points.empty()) {
-      // What the first ones leave of the budget goes to others. It is asked once, so that what came
-      // of them has hardly a say in how many there are.
+      // The budget that the first populations leave goes to others. Their number is set only once,
+      // so that the results have hardly any influence on it.
       constexpr double kReserve = 1.1;
       const double each = kReserve * static_cast<double>(result.runs - result.exploring) /
                           static_cast<double>(populations.size());

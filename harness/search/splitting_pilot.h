@@ -8,7 +8,7 @@
 
 namespace parallax::harness {
 
-/// Where starts below a level are, roughly.
+/// A level of margins, and starts below it that show roughly where these are.
 struct PilotLevel {
   double level = 0.0;
   std::vector<UnitPoint> points;

@@ -59,8 +59,8 @@ std::optional<UnitPoint> moved(const UnitPoint& from, const std::vector<UnitPoin
   constexpr double kDecades = 3.0;  // of random lengths
   auto point = from;
   const double kind = rng.uniform();
-  // What has no difference is a step of another kind: whether it has one is chance, not the
-  // start's.
+  // Without a difference, a step of another kind is taken. Whether there is one is chance and does
+  // not depend on the start.
   if (kind < kDifferences && guides.size() > 1 && step_along_difference(guides, rng, point)) {
     const bool inside =
         std::all_of(point.begin(), point.end(), [](double x) { return x >= 0.0 && x <= 1.0; });

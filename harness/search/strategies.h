@@ -36,7 +36,7 @@ class SobolStrategy final : public SearchStrategy {
   SobolSequence sequence_;
 };
 
-/// Every other point uniform, the others boundary_point.
+/// Proposes every other point uniformly, the others by boundary_point.
 class BoundaryStrategy final : public SearchStrategy {
  public:
   explicit BoundaryStrategy(std::uint64_t seed) : rng_(seed, 2) {}

@@ -20,7 +20,7 @@ namespace parallax::harness {
 class SearchStrategy {
  public:
   virtual ~SearchStrategy() = default;
-  /// `count` points. What was proposed before is in the history by now.
+  /// Proposes `count` points. The history has the answers to all earlier proposals.
   virtual std::vector<UnitPoint> propose(const SearchHistory& history, std::size_t count) = 0;
 };
 
@@ -41,14 +41,14 @@ std::optional<StrategyKind> strategy_kind(std::string_view name);
 /// The most that a run can be asked for; with more, other methods answer.
 inline constexpr std::int64_t kMaxSearchRuns = 10'000;
 
-/// What a run is asked to search before it certifies.
+/// The search that a run makes before it certifies.
 struct SearchSpec {
   std::int64_t runs = 0;  // simulations of each trace at most; 0: no search
   StrategyKind strategy = StrategyKind::kPortfolio;
   friend bool operator==(const SearchSpec&, const SearchSpec&) = default;
 };
 
-/// How many points are asked for at a time, whatever the number of jobs.
+/// The number of points asked for at a time, whatever the number of jobs.
 inline constexpr std::size_t kSearchBatch = 4;
 
 std::unique_ptr<SearchStrategy> make_strategy(StrategyKind kind, std::size_t dimensions,

@@ -31,7 +31,8 @@ class WeightedBounds {
   double lower(double error) const;
 
  private:
-  /// Of the upper bound; the largest is best where no discrepancy is outside of where q is large.
+  /// Bet sizes for the upper bound. The largest bet gives the tightest bound when all discrepancies
+  /// lie where q is large.
   static constexpr std::array<double, 3> kBets = {0.99, 0.5, 0.15};
   static constexpr std::array<double, 3> kShares = {0.94, 0.04, 0.02};
 

@@ -8,7 +8,7 @@ namespace parallax::harness {
 /// The files that a simulator's command names.
 struct CommandFiles {
   std::vector<std::string> found;   // the program, then each further word that is a file
-  std::vector<std::string> absent;  // where the program was looked for in vain
+  std::vector<std::string> absent;  // paths where the program was sought and not found
 };
 
 /// Looks the program up as execvp does. What these files load in turn is not known.

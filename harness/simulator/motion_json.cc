@@ -22,7 +22,7 @@ std::optional<Pose> pose_of(const Json& json) {
   return pose;
 }
 
-/// What is wrong with it; empty: nothing.
+/// Reads a frame. Returns its fault; empty: none.
 std::string read_frame(const Json& json, PlainFrame& frame) {
   const Json* time = base::json_member(json, "t");
   const auto number = time == nullptr ? std::nullopt : base::json_as<double>(*time);

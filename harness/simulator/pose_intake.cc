@@ -14,7 +14,7 @@ constexpr double kOffUnit = 0.02;  // of the square of a quaternion's norm
 // Frames nearer to each other than this share of the interval are more than was asked for.
 constexpr double kNearest = 0.5;
 
-/// What is wrong with a pose; empty: nothing. The turn is made a unit quaternion.
+/// Makes the turn of a pose a unit quaternion. Returns the fault of the pose; empty: none.
 std::string mend(Pose& pose) {
   double norm = 0.0;
   for (const double x : pose.q) norm += x * x;
@@ -56,7 +56,7 @@ void PoseIntake::take(OutcomeReply& reply) {
   std::string packed = std::exchange(motion.frames, {});
   if (!packed.empty()) {
     auto why = frames.empty() ? check_packed(packed) : "it sends `poses` and `motion`";
-    // What the simulator says of the motion behind them does not make them wrong.
+    // A fault that the simulator reports about motion after them does not make them wrong.
     if (why.empty()) motion.frames = std::move(packed);
     if (motion.fault.empty()) motion.fault = std::move(why);
   }

@@ -11,10 +11,10 @@
 
 namespace parallax::harness {
 
-/// Makes packed frames of what an external simulator says of poses, and checks it: bodies that it
+/// Packs the poses that an external simulator reports into frames, and checks them: bodies that it
 /// announced, finite places, turns that are unit quaternions, times that do not go back. Frames
-/// that come faster than they were asked for are thinned out; what is wrong ends the recording of
-/// this simulation, and nothing else.
+/// that come faster than requested are thinned out; an error ends the recording of this simulation,
+/// and nothing else.
 class PoseIntake {
  public:
   /// Another simulation. Without a scene, or with an interval of 0, nothing is taken. `scene`

@@ -384,7 +384,7 @@ Outcome ProcessSimulator::reset(const State& initial, std::uint64_t seed) {
 
 double ProcessSimulator::act_timeout_s(double sim_time_limit_s) const {
   if (options_.act_timeout_s > 0.0) return options_.act_timeout_s;
-  // The slower of what the scenario and the simulator say.
+  // The slower of the factors that the scenario and the simulator give.
   double factor = options_.min_real_time_factor;
   if (info_.min_real_time_factor > 0.0) factor = std::min(factor, info_.min_real_time_factor);
   return kActOverheadS + sim_time_limit_s / factor;

@@ -227,7 +227,7 @@ HelloReply read_info(FieldReader& reader, const Json& result) {
   if (hello.info.determinism.empty()) hello.info.determinism = "none";
   hello.info.seeds = reader.boolean(result, "seeds", false);
   hello.info.timestep_s = reader.number(result, "time_step", false);
-  // A scene that is wrong is none: what moves is told for people alone.
+  // A faulty scene is ignored: motion is recorded for people alone.
   std::string unread;
   if (const Json* scene = reader.member(result, "pose", false)) {
     hello.info.scene = scene_from_text(base::json_text(*scene), unread);

@@ -34,9 +34,8 @@ struct ActRequest {
 struct ObserveRequest {};
 struct CloseRequest {};
 struct DescribeRequest {};
-/// What would be asked for one after the other, in one request: a reset, then observations and
-/// acts. What follows on an answer that is no observation and not ok, failed or truncated is not
-/// asked.
+/// A sequence of requests in one: a reset, then observations and acts. It ends at an answer that is
+/// no observation and not ok, failed or truncated.
 struct PerformRequest {
   std::vector<std::variant<ResetRequest, ActRequest, ObserveRequest>> requests;
 };
@@ -66,14 +65,14 @@ struct HelloReply {
   std::int64_t protocol = kProtocolVersion;
   SimulatorInfo info;
 };
-/// Where bodies were at one time, as a simulator says that does not pack frames itself.
+/// Poses of bodies at one time, from a simulator that does not pack frames itself.
 struct PlainFrame {
   double time_s = 0.0;  // simulated, since reset
   std::vector<std::pair<std::string, Pose>> poses;
-  /// What hangs in which gripper, all of it; none: as before.
+  /// The bodies that hang in grippers, all of them; none: as before.
   std::optional<std::vector<std::pair<std::string, std::string>>> held;
 };
-/// To reset and act. Where something is wrong with the motion, `outcome.motion.fault` says what;
+/// The reply to reset and act. `outcome.motion.fault` names a fault of the motion, if there is one;
 /// the reply is good all the same.
 struct OutcomeReply {
   Outcome outcome;
@@ -83,7 +82,7 @@ struct ObserveReply {
   State state;
 };
 struct CloseReply {};
-/// What the world has: parameters, actions and their arguments, and nothing else of `info`.
+/// The contents of the world: parameters, actions and their arguments, and nothing else of `info`.
 struct DescribeReply {
   SimulatorInfo info;
 };

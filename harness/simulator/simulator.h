@@ -14,7 +14,7 @@
 
 namespace parallax::harness {
 
-/// What a simulator reports or takes: SI units, radians, quaternions w-x-y-z.
+/// A value that a simulator reports or takes: SI units, radians, quaternions w-x-y-z.
 using Value = std::variant<bool, std::int64_t, double, std::string>;
 
 /// Named values, sorted by name: "robot.x", "box.held", "drawer2.q".
@@ -23,9 +23,9 @@ using State = std::map<std::string, Value, std::less<>>;
 /// The one variable of an observation that could not be made.
 inline constexpr std::string_view kLostVariable = "lost";
 
-/// What became of a request. `kFailed` is the *action* failing in the simulated world (path
-/// blocked, object not held): a legitimate observation that is compared with the prediction.
-/// `kLost` is the *simulator* failing (crash, hang, NaN): never an observation.
+/// The status of a request. `kFailed` is the *action* failing in the simulated world (path blocked,
+/// object not held): a legitimate observation that is compared with the prediction. `kLost` is the
+/// *simulator* failing (crash, hang, NaN): never an observation.
 enum class SimStatus : std::uint8_t {
   kOk,
   kFailed,
@@ -38,7 +38,7 @@ std::string_view to_string(SimStatus status);
 /// kUnsupported for a word that is not in the protocol.
 SimStatus sim_status_from(std::string_view word);
 
-/// What moved since the last request, packed (motion_stream.h), where motion is recorded.
+/// The motion since the last request, packed (motion_stream.h), where motion is recorded.
 struct RecordedMotion {
   std::string frames;
   std::string fault;  // why there is no more from here on; empty: there is
@@ -62,7 +62,7 @@ struct Parameter {
   std::optional<double> lower = {}, upper = {};  // of a start, where it says so
 };
 
-/// What a controller takes, where the simulator says so.
+/// An argument of a controller, where the simulator tells it.
 struct ActionArgument {
   std::string name;
   std::string unit;
@@ -71,7 +71,7 @@ struct ActionArgument {
 };
 using ActionArguments = std::map<std::string, std::vector<ActionArgument>, std::less<>>;
 
-/// What a simulator says of itself at the handshake.
+/// The simulator's description of itself at the handshake.
 struct SimulatorInfo {
   std::string name;
   std::string version;
@@ -80,9 +80,9 @@ struct SimulatorInfo {
   std::vector<Parameter> parameters;
   std::vector<std::string> actions;  // controllers that `act` accepts
   double timestep_s = 0.0;
-  /// What it records of motion, if it does.
+  /// The scene of its motion recordings, if it makes any.
   std::optional<RecordedScene> scene = {};
-  /// Of those actions whose arguments it tells; others take what they like.
+  /// Arguments by action, where the simulator tells them; other actions take any arguments.
   ActionArguments arguments = {};
   std::vector<std::string> capabilities = {};  // "describe", "margins", "noise", "poses"
   double min_real_time_factor = 0.0;           // how fast it simulates at least; 0: not said
@@ -114,12 +114,13 @@ class Simulator {
   /// This one, if it is somewhere else.
   virtual RemoteSimulator* remote() { return nullptr; }
   virtual SimulatorInfo info() = 0;
-  /// From the next reset on outcomes tell what moved, with a frame every `interval_s` of simulated
-  /// time in which something did; 0: no longer. One that cannot, or need not, does nothing.
+  /// From the next reset on, outcomes report motion, with a frame every `interval_s` of simulated
+  /// time in which something moved; 0: no longer. A simulator that cannot, or need not, does
+  /// nothing.
   virtual void record_motion(double interval_s) { (void)interval_s; }
-  /// What will be asked for after the next reset, and after no other, as long as nothing is lost,
+  /// Announces the requests after the next reset, and after no other, as long as nothing is lost,
   /// refused or given up: these acts, in this order, with an observation before the first one and
-  /// after each. One that is far away may do it all at once; one that is not does not even ask.
+  /// after each. A remote simulator may do them all at once; a local one does not even call `acts`.
   virtual void announce(const AnnouncedActs& acts) { (void)acts; }
   /// Puts the world into `initial` (settable parameters; others take their default) and seeds the
   /// engine's random numbers. kOk, kInvalidStart (the reason names the pair and the depth) or
@@ -148,8 +149,8 @@ class RemoteSimulator : public Simulator {
   /// Sees to it that a worker is there, which may take its time. False: there is none any more, and
   /// there will be none.
   virtual bool ready() = 0;
-  /// What becomes of a simulation whose worker is gone: WorkerGone is thrown, or, the default, the
-  /// simulator is lost.
+  /// Chooses the result of a simulation whose worker is gone: WorkerGone is thrown, or, by default,
+  /// the simulator is lost.
   virtual void throw_when_gone(bool throws) = 0;
   /// May be called by any thread: nothing that this simulator is at is wanted any more.
   virtual void interrupt() = 0;

@@ -61,7 +61,7 @@ std::string_view unit_by_name(std::string_view name) {
   return best;
 }
 
-/// What is wrong with calling it so; empty: nothing.
+/// Checks the unit that is named for a variable. Returns nothing if it is right.
 std::optional<UnitFinding> wrong_unit(const std::string& name, const std::string& unit) {
   for (const auto& [foreign, right] : kForeign) {
     if (unit == foreign) {

@@ -234,7 +234,7 @@ bool is_beat(std::string_view line) { return line.starts_with(kBeatBegin); }
 int serve(Simulator& simulator, int in_fd, int out_fd, const ServeOptions& options) {
   LineReader reader(in_fd, options.stop);
   LineWriter out(out_fd);
-  // What a shell wrote without ending its line must not stand before the greeting.
+  // An unfinished line from a shell must not stand before the greeting.
   if (!options.greeting.empty() && !out.write('\n' + options.greeting)) return 1;
   Pulse pulse(in_fd, out, options);
   std::string line;

@@ -9,10 +9,11 @@
 
 namespace parallax::harness {
 
-/// For whoever is asked from another machine: it says first who it is, and shows that it is alive.
+/// Options for workers that are asked from another machine: they first say who they are, and show
+/// that they are alive.
 struct ServeOptions {
   std::string greeting = {};  // a first line, which nobody asked for; empty: none
-  /// Above 0: while a request is under way, so often a line says so (beat_line).
+  /// Above 0: the interval of beats (beat_line) while a request is under way [s].
   double beat_s = 0.0;
   /// Raised when whoever asked is gone before the answer. Raised by anybody else, say a batch
   /// system that cancels the job, it ends the serving without an answer: one of a simulator that
@@ -20,9 +21,9 @@ struct ServeOptions {
   std::atomic<bool>* stop = nullptr;
 };
 
-/// What is written while the request of this number is under way.
+/// The line that is written while the request of this number is under way.
 std::string beat_line(std::int64_t id);
-/// Is the line one of these? What stands in it says nothing more.
+/// Is the line one of these? It carries no further information.
 bool is_beat(std::string_view line);
 
 /// Answers protocol requests (protocol.h) read from `in_fd` on `out_fd`, one at a time, until

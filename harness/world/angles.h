@@ -10,7 +10,7 @@ inline double wrapped(double angle_rad) {
   return std::atan2(std::sin(angle_rad), std::cos(angle_rad));
 }
 
-/// Where the x axis of a frame with this rotation points, seen from above.
+/// The heading of the x axis of a frame with this rotation, seen from above.
 inline double heading_rad(const Eigen::Matrix3d& R) { return std::atan2(R(1, 0), R(0, 0)); }
 
 /// `p` turned by `angle_rad` about the vertical through `centre`.

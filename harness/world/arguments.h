@@ -33,7 +33,7 @@ struct ArgumentSpec {
   std::string_view at_most = {};  // another argument that this one must not exceed
 };
 
-/// What a number given as this argument must lie within.
+/// The bounds of a number that is given as this argument.
 struct ArgumentBounds {
   double low = 0.0, high = 0.0;
   bool low_open = false;
@@ -90,8 +90,8 @@ class Arguments {
 /// A number whether it was written as 1 or as 1.0.
 std::optional<double> as_number(const Value& value);
 
-/// What is wrong with `name` as an argument of this kind in this world, to be read after "the
-/// argument `x` ..."; empty if nothing is.
+/// The fault of `name` as an argument of this kind in this world, to be read after "the argument
+/// `x` ..."; empty if there is none.
 std::string wrong_name(const ArgumentSpec& argument, std::string_view name, const WorldSpec& world,
                        const WorldLayout& layout);
 /// The same of a number.

@@ -87,7 +87,8 @@ Eigen::Isometry3d tool_pose(const WorldSpec& spec, const ArmSpec& arm) {
   return X_WT;
 }
 
-/// What is said of one joint of a chain; false: nothing else can be.
+/// Checks one joint of a chain. Returns false if it has faults; then nothing else can be said of
+/// it.
 bool check_chain_joint(const std::string& path, const JointSpec& joint, ProblemList& problems) {
   const auto before = problems.size();
   const bool hinge = joint.type == JointType::kHinge;

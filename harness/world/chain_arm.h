@@ -22,19 +22,20 @@ struct ChainArm {
 /// `arm` must pass check_chain.
 ChainArm chain_arm(const WorldSpec& spec, const WorldLayout& layout, const ArmSpec& arm);
 
-/// What is wrong with the chain of an arm: joints that do not hang on each other, motors that could
-/// not hold it as it is placed, a `carry_m` that it cannot bring its tool to. Bodies, joints and
-/// the other parts of the arm are right.
+/// Checks the chain of an arm: joints that do not hang on each other, motors that could not hold it
+/// as it is placed, a `carry_m` that it cannot bring its tool to. Bodies, joints and the other
+/// parts of the arm must be right.
 void check_chain(const WorldSpec& spec, const WorldLayout& layout, const ArmSpec& arm,
                  ProblemList& problems);
 
-/// "left: chain of 6 joints, right: palm on a gantry, base on springs": what of a mobile robot is a
-/// machine, and what is held. Empty without one.
+/// Summarizes which arms are kinematic chains and which are gantries, and whether the base is held
+/// upright: "left: chain of 6 joints, right: palm on a gantry, base on springs". Empty without a
+/// mobile robot.
 std::string arms_text(const WorldSpec& spec);
 
 /// Fills in what follows from the chains of arms: shoulders (a point of the first joint's axis),
 /// reaches (the most that the joints could give, were they stretched), and, where none is given
-/// (a number that is none), the place where the tool is carried: where the world has it by default.
+/// (NaN), the place where the tool is carried: where the world has it by default.
 /// Does nothing for chains whose joints or bodies are not there.
 void complete_chains(WorldSpec& spec);
 

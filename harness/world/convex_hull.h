@@ -23,7 +23,7 @@ struct ConvexHull {
   double volume_m3 = 0.0;
   Eigen::Matrix3d moments_m2 = Eigen::Matrix3d::Zero();  // of inertia about the centroid, per kg
 
-  /// By how much the point lies inside; below 0: outside, at least so far from one face.
+  /// The depth of the point inside the hull. Below 0: it is outside, at least so far from one face.
   double depth_of(const Eigen::Vector3d& p) const;
   /// Lowest and highest coordinates when R turns it.
   std::pair<Eigen::Vector3d, Eigen::Vector3d> span(const Eigen::Matrix3d& R) const;

@@ -7,15 +7,16 @@
 
 namespace parallax::harness {
 
-/// What household things weigh [kg/m3], hollow ones with what is in them: from foam and empty boxes
-/// (expanded polystyrene has 15) to copper (8960), by the tables of The Physics Hypertextbook.
+/// The range of densities of household things [kg/m3], hollow ones with their contents: from foam
+/// and empty boxes (expanded polystyrene has 15) to copper (8960), by the tables of The Physics
+/// Hypertextbook.
 inline constexpr double kLightestThing_kg_m3 = 5.0, kHeaviestThing_kg_m3 = 9000.0;
 
-/// Of a body of this mass, its boxes counted one by one.
+/// The density of a body of this mass, the volumes of its shapes added up [kg/m3].
 double density_kg_m3(const BodySpec& body, double mass_kg);
 
-/// Does a thing of this mass and the body's size weigh what no household thing weighs? "little" or
-/// "much"; nothing where it does not.
+/// Is the density of a body of this mass unusual for household things? "little" or "much"; nothing
+/// where it is not.
 std::optional<std::string> odd_density(const BodySpec& body, double mass_kg);
 
 }  // namespace parallax::harness

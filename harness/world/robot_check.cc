@@ -10,7 +10,7 @@
 namespace parallax::harness {
 namespace {
 
-/// What the checks of both robots look things up in.
+/// The tables in which the checks of both robots look things up.
 class RoleChecker {
  protected:
   RoleChecker(const WorldSpec& spec, ProblemList& problems)

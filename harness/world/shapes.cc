@@ -17,7 +17,7 @@ Eigen::Matrix3d tilt(const BodyShape& shape) {
 
 bool is_tilted(const BodyShape& shape) { return shape.roll_rad != 0.0 || shape.pitch_rad != 0.0; }
 
-/// Of a capsule, between its caps.
+/// The length of a capsule between its caps.
 double straight_m(const Eigen::Vector3d& size_m) { return std::max(size_m.z() - size_m.x(), 0.0); }
 
 }  // namespace

@@ -12,7 +12,7 @@ Eigen::Matrix3d shape_rotation(const BodyShape& shape);
 
 double volume_m3(const BodyShape& shape);
 
-/// Where the centre of mass of an evenly filled shape is in the frame of the body [m].
+/// The centre of mass of an evenly filled shape in the frame of the body [m].
 Eigen::Vector3d centroid_B(const BodyShape& shape);
 
 /// Lowest and highest coordinates, from the shape's place on, of something that R turns. `hull` is

@@ -19,7 +19,7 @@ struct WorldProblem {
   std::string suggestion;  // a name that exists, or empty
 };
 
-/// What checks find, in the order in which they find it.
+/// The problems that checks find, in the order in which they find them.
 class ProblemList {
  public:
   ProblemList() = default;
@@ -49,12 +49,12 @@ std::vector<std::string> names_of(const List& list) {
   return names;
 }
 
-/// What is wrong with the parts of `spec` and with how they hang together, in their order: all that
-/// can be said without building it. Empty: `lay_out` takes it.
+/// Checks the parts of `spec` and how they hang together, and returns the problems in this order:
+/// all that can be found without building it. Empty: `lay_out` takes it.
 std::vector<WorldProblem> check_structure(const WorldSpec& spec);
 
-/// What is wrong with the robot on a line, or with the mobile one, if there is one: the roles that
-/// its parts play. Bodies and joints are right.
+/// Checks the roles of the parts of the robot on a line, or of the mobile one, if there is one.
+/// Bodies and joints must be right.
 void check_line_robot(const WorldSpec& spec, ProblemList& problems);
 void check_mobile_robot(const WorldSpec& spec, ProblemList& problems);
 

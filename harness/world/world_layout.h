@@ -37,7 +37,7 @@ struct WorldLayout {
   base::Store<HingeId, JointSpec> hinges;      // sorted by name
   base::Store<LinkId, Link> links;             // sorted by the name of their first member
   std::vector<std::optional<LinkId>> link_of;  // by body; none: static
-  /// By body: those of one number, but 0, are kept apart by BodySpec::apart.
+  /// By body: bodies of one number, but 0, are kept apart by BodySpec::apart.
   std::vector<std::uint32_t> apart_of;
   /// By body. Bodies of one assembly hang together by joints and never collide with each other;
   /// 0 is the static world.
@@ -64,7 +64,7 @@ struct Placement {
   double mass_kg = 0.0;  // of a free body; 0: as specified
 };
 
-/// By BodyId.
+/// A flag for each BodyId.
 using BodyMask = std::vector<bool>;
 
 /// `spec` must pass check_world.
@@ -83,10 +83,10 @@ std::vector<Parameter> observables(const WorldSpec& spec);
 /// Sliders whose position says something: all but the fingers.
 std::vector<SliderId> observed_sliders(const WorldLayout& layout, const MobileRobotSpec& robot);
 
-/// "JOINT.q" and the pose of what a joint of the building carries.
+/// "JOINT.q" and the pose of the body that a joint of the building carries.
 std::vector<Parameter> joint_parameters(const JointSpec& joint);
 
-/// Where everything is at reset, or why that cannot be.
+/// The state at reset, or the reason why it cannot be.
 struct StartState {
   SimStatus status = SimStatus::kOk;  // or kUnsupported, kInvalidStart
   std::string reason;

@@ -15,8 +15,8 @@
 
 namespace parallax::harness {
 
-/// What fills the box of a shape. Cylinders and capsules stand along the shape's z axis; the caps
-/// of a capsule lie inside its box.
+/// The form that fills the box of a shape. Cylinders and capsules stand along the shape's z axis;
+/// the caps of a capsule lie inside its box.
 enum class ShapeForm : std::uint8_t { kBox, kSphere, kCylinder, kCapsule, kHull };
 
 /// One shape of a body, turned in the body's frame B about x, then y, then z.
@@ -24,19 +24,20 @@ struct BodyShape {
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  // of the box round it
   Eigen::Vector3d p_BS = Eigen::Vector3d::Zero();    // centre of the shape in B [m]
   double yaw_rad = 0.0;
-  ShapeForm form = ShapeForm::kBox;  // of what is round, size_m.x() and .y() are the diameter
+  ShapeForm form = ShapeForm::kBox;  // for round forms, size_m.x() and .y() are the diameter
   double roll_rad = 0.0, pitch_rad = 0.0;
-  /// Of kHull. Shared, as it never changes and shapes are copied with every probe of a sweep.
+  /// The hull of kHull. Shared, as it never changes and shapes are copied with every probe of a
+  /// sweep.
   std::shared_ptr<const ConvexHull> hull = {};
 };
 
-/// How the mass of a body is spread, where that does not follow from its shapes.
+/// The distribution of a body's mass, where it does not follow from its shapes.
 struct InertiaSpec {
   Eigen::Vector3d p_BC = Eigen::Vector3d::Zero();       // centre of mass in B [m]
   Eigen::Matrix3d I_C_kg_m2 = Eigen::Matrix3d::Zero();  // about it, along the axes of B
 };
 
-/// How a gripper takes hold of a body.
+/// The grasp of a body by a gripper.
 struct GraspSpec {
   Eigen::Vector3d p_BG = Eigen::Vector3d::Zero();  // middle of the pads from the body's origin [m]
   /// Offset and wrist turn with the body's heading, or with the robot's.
@@ -90,9 +91,9 @@ struct HandleSpec {
   double width_m = 0.016;
 };
 
-/// What carries the child of a gantry of the world in place of a hand that holds it upright at its
-/// height: a spring and a damper for the height, loaded so that the robot stands at its default
-/// height, and others against roll and pitch. The dampers work against a level at rest.
+/// The suspension that carries the child of a gantry of the world, in place of a hand that holds it
+/// upright at its height: a spring and a damper for the height, loaded so that the robot stands at
+/// its default height, and others against roll and pitch. The dampers work against a level at rest.
 struct SuspensionSpec {
   double stiffness_n_m = 0.0, damping_n_s_m = 0.0;
   double stiffness_nm_rad = 0.0, damping_nm_s = 0.0;
@@ -133,7 +134,8 @@ struct SolverSpec {
   double max_correcting_velocity_m_s = 1.0;
   double start_penetration_m = 0.002;      // deeper at reset: invalid start
   std::int64_t max_contacts_per_pair = 8;  // of two shapes
-  // Of two bodies, among those with the same normal; none: as many as their shapes have.
+  // The limit for two bodies, among contacts with the same normal; none: as many as their shapes
+  // have.
   std::optional<std::int64_t> max_contacts_per_side;
   // A free body slower than this for so long is put to sleep until something touches it.
   double sleep_linear_m_s = 0.01;
@@ -213,7 +215,7 @@ struct MobileRobotSpec {
   std::vector<ArmSpec> arms;  // sorted by name
 };
 
-/// What steps a world.
+/// The engine that steps a world.
 enum class EngineKind : std::uint8_t { kOde, kMujoco };
 inline std::string_view to_string(EngineKind kind) {
   return kind == EngineKind::kMujoco ? "mujoco" : "ode";
