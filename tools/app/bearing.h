@@ -21,14 +21,14 @@ enum class Bearing : std::uint8_t {
   kOther,  // it goes wrong earlier or otherwise, or goes another way, and says nothing of it
 };
 
-/// Holds simulations of one trace, or executions of one plan, against a discrepancy of it.
+/// Compares simulations of one trace, or executions of one plan, with a discrepancy of it.
 class BearingReader {
  public:
   /// `found`, which has a parting, and `context` outlive the object.
   BearingReader(const RecordedDiscrepancy& found, Context& context);
 
   Bearing bearing(const ObservedPath& path);
-  /// The same of a record, of whatever number; reports as observed_path does.
+  /// The same for a record with any number; reports as observed_path does.
   base::Result<Bearing> bearing(const harness::SampleRecord& record);
 
  private:

@@ -17,14 +17,15 @@ class BestTraces {
   BestTraces(const compiler::CompiledModel& model, Context& context);
 
   const runtime::Optimum& optimum() const { return optimum_; }
-  /// The model whose traces are the best ones of `model`. None: no trace was found, or not the
-  /// optimum, or its sums are too many to be written as clauses.
+  /// The model whose traces are the best ones of `model`. None: no trace or no optimum was found,
+  /// or the sums need too many clauses.
   std::optional<compiler::CompiledModel> model_of_best(const compiler::CompiledModel& model) const;
 
-  /// A proof that no trace of `model` is better was made and checked, or what came of it.
+  /// Makes and checks a proof that no trace of `model` is better, and keeps the verdict.
   void certify(const CertifyOption& option, const std::vector<std::string>& models,
                const compiler::CompiledModel& model, Context& context);
-  /// The list of all best traces was proved complete: then there is no better one either.
+  /// Takes over the verdict on the complete list of best traces: then there is no better one
+  /// either.
   void adopt(const TraceCertifier& certifier) { verdict_ = certifier.verdict(); }
 
   /// `optimum 7 (no proof): count Happens(event,time)`, a line for each objective; or what is known

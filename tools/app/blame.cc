@@ -21,7 +21,7 @@ bool is_effect(OriginKind kind) {
   return kind == OriginKind::kEffectAxiom || kind == OriginKind::kTrajectoryAxiom;
 }
 
-/// Looks into one timepoint: the model's axioms in groups, beside them groups that state one fluent
+/// Search at one timepoint: the model's axioms in groups, and further groups that state one fluent
 /// each, in both ways, and one that states how the last perform ended.
 class PartingSearch {
  public:
@@ -56,7 +56,7 @@ class PartingSearch {
       solver_->add(std::span(&literal, 1), as_seen(i));
       solver_->add(std::span(&other, 1), otherwise(i));
     }
-    // How it ended is what is stated with the last outcome and not without.
+    // The facts that the last outcome adds go into a group of their own.
     const auto told = facts_.facts(path, after, after, steps).value_or(observed.facts);
     for (const auto literal : told) {
       if (std::find(observed.facts.begin(), observed.facts.end(), literal) ==
@@ -100,7 +100,7 @@ class PartingSearch {
  private:
   struct Stated {
     compiler::FluentId fluent;
-    Literal literal;  // as it was seen; of one that was neither so nor so: that it holds
+    Literal literal;  // as observed; if it neither holds nor does not: that it holds
     bool neither;
   };
 
@@ -143,7 +143,7 @@ class PartingSearch {
       if (!stated.neither || !contradicts({otherwise(i)})) return;
       observed = false;
     }
-    // What axioms say of the step itself is told rather than what follows from earlier states.
+    // Prefers a core from the axioms about this step alone to one that involves earlier states.
     auto axioms_only = direct_;
     axioms_only.push_back(excluded ? as_seen(i) : otherwise(i));
     if (solve(axioms_only) != SolveStatus::kUnsatisfiable) {
@@ -169,8 +169,8 @@ class PartingSearch {
       if (!contradicts(seen)) return Parting::Kind::kNoState;
       kind = Parting::Kind::kOutcome;
     }
-    // What was seen is told rather than what follows from the state before. How a perform ended is
-    // for the plan to say, by what was seen.
+    // Prefers a core from the observed fluents to one that follows from the preceding state. The
+    // plan decides how a perform ended, from what was observed.
     auto few = kind == Parting::Kind::kTogether ? direct_ : of_plan_;
     few.insert(few.end(), seen.begin(), seen.end());
     if (solve(few) != SolveStatus::kUnsatisfiable) contradicts(seen);
@@ -190,8 +190,9 @@ class PartingSearch {
                : &parting_.differences[static_cast<std::size_t>(at - numbers_.begin())];
   }
 
-  /// What the action was to bring about comes first, then what it was to end, then what was to stay
-  /// and is gone, then what came.
+  /// Orders the differences. Effects of the action come first: fluents that should hold and do not,
+  /// then fluents that should not hold and do. Fluents that no axiom of the event explains follow
+  /// in the same order.
   void rank() {
     const auto of_event = groups_of_event(model_, axioms_, path_, parting_);
     const auto is_caused = [&](const Difference& difference) {
@@ -224,8 +225,8 @@ class PartingSearch {
     parting_.differences = std::move(ranked);
   }
 
-  /// Given the first difference and all that the model is right about, do axioms about single
-  /// states alone ask for this one?
+  /// Do axioms about single states alone imply this difference, given the first one and everything
+  /// that the model predicts correctly?
   bool follows(std::size_t i, std::size_t first) {
     IndexSet groups;
     for (const auto group : all_) {

@@ -16,12 +16,12 @@
 
 namespace parallax::tools {
 
-/// A fluent that the model excludes as it was seen.
+/// A fluent whose observed value the model excludes.
 struct Difference {
-  /// What it is beside the first one, which is told.
+  /// Relation to the first difference, which is the one reported.
   enum class Role : std::uint8_t {
     kFirst,
-    kFollows,     // the model's axioms about single states ask for it, given the first
+    kFollows,     // implied by the first one and axioms about single states
     kSameAction,  // another effect of the same action
     kFurther,
   };
@@ -30,7 +30,7 @@ struct Difference {
   bool observed = false;
   bool neither = false;  // it neither holds nor does not; `observed` is what the model excludes
   Role role = Role::kFurther;
-  /// Groups (group_axioms) that cannot hold with it: minimal.
+  /// A minimal set of groups (group_axioms) that contradict the observed value.
   runtime::IndexSet blamed;
 };
 
@@ -46,14 +46,15 @@ struct Parting {
   Kind kind = Kind::kFluents;
   std::size_t after = 0;                // timepoint
   std::vector<Difference> differences;  // the first one first
-  /// kTogether, kOutcome: fluents, as they were seen, that it takes; none can be left out.
+  /// kTogether, kOutcome: a minimal set of observed fluents that contradict the model.
   std::vector<std::pair<compiler::FluentId, bool>> needed;
   runtime::Observed observed;  // all that was seen up to there
 };
 
-/// What the blame is about: everything observed is stated, the states before the parting and the
-/// events with their outcomes, what is not known stays open. None if the model goes along with the
-/// whole path. Fails, having reported kExplanationCutShort, if the search was stopped.
+/// Finds the first timepoint at which the model contradicts the observed path. All observed states
+/// up to there, the events and their outcomes are asserted; unknown values stay open. None if the
+/// model admits the whole path. Fails, having reported kExplanationCutShort, if the search was
+/// stopped.
 base::Result<std::optional<Parting>> find_parting(const compiler::CompiledModel& model,
                                                   const ObservedPath& path, Context& context);
 

@@ -37,7 +37,7 @@ std::string axiom_words(const compiler::Origin& origin) {
   return text.empty() ? std::string(compiler::to_string(origin.kind)) : '`' + text + '`';
 }
 
-/// "domain.e:9"; empty for what no text says.
+/// "domain.e:9"; empty for an origin without a place in a text.
 std::string place_of(const compiler::Origin& origin) {
   if (origin.place.file.empty()) return {};
   return fmt::format("{}:{}", base::printable(origin.place.file), origin.place.begin.line);
@@ -97,7 +97,7 @@ class BlameWords {
                        first.observed ? "and" : "but", seen);
   }
 
-  /// What a literal of a clause asks for, the other way round: a condition.
+  /// The negation of a clause's literal, in words: the condition under which the clause applies.
   std::optional<std::string> condition(Literal literal) const {
     if (texts_.is_auxiliary(literal.var())) return std::nullopt;
     const auto atom = model_.atom(literal.var());
@@ -146,8 +146,8 @@ class BlameWords {
         model_.variable(slot.value_or(0), static_cast<compiler::Timepoint>(at())));
   }
 
-  /// The instance that says the opposite of a difference: of an effect, else of inertia, else of
-  /// another axiom.
+  /// The instance that concludes the opposite of a difference: of an effect axiom, else of inertia,
+  /// else of another axiom.
   struct Conclusion {
     std::size_t clause;
     const Difference* difference;
@@ -222,7 +222,8 @@ class BlameWords {
     return out;
   }
 
-  /// Of the axioms with that very effect of the event the instances that were nearest to being met.
+  /// The instances of axioms with exactly this effect of the event whose conditions were nearest to
+  /// being met.
   std::vector<std::size_t> nearest_instances(const Conclusion& found) const {
     std::vector<std::size_t> out;
     for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
@@ -271,7 +272,7 @@ class BlameWords {
     return out;
   }
 
-  /// Conditions that were seen not to be so, or those that nobody saw, if they are plain.
+  /// Conditions that were observed to be false, or else the unobserved ones, if they are plain.
   enum class Unmet : std::uint8_t { kSeen, kUnseen };
   std::vector<std::string> conditions_at(std::span<const Literal> literals, Unmet wanted) const {
     std::vector<std::string> out;
@@ -302,7 +303,7 @@ class BlameWords {
     return fmt::format("{}{}: {}", what, place, axiom_words(from));
   }
 
-  /// The axiom that stands first in a text, if the set is one; else that there are several.
+  /// The axiom that excludes the state: the first one that is not generated, if there is one.
   std::string exclusion(const std::vector<std::size_t>& clauses) const {
     const auto stated = std::find_if(clauses.begin(), clauses.end(), [&](std::size_t clause) {
       return origin(clause).kind == OriginKind::kAxiom;
@@ -311,7 +312,7 @@ class BlameWords {
     return clauses.empty() ? "which the model excludes" : axiom(clauses.front());
   }
 
-  /// "`A` holds and `B` does not hold": what it takes of the state that was seen.
+  /// "`A` holds and `B` does not hold": the observed fluents that are needed for the contradiction.
   std::string needed() const {
     std::vector<std::string> out;
     for (const auto& [fluent, holds] : parting_.needed) {

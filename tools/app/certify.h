@@ -41,7 +41,7 @@ class TraceCertifier {
   runtime::Loading loading() const {
     return files_ ? runtime::Loading::kWhole : runtime::Loading::kAsNeeded;
   }
-  /// The files can be written. False: reported.
+  /// Can the files be written? If not, that was reported.
   bool ready() const { return !option_.file.empty() == files_.has_value(); }
   void add(const runtime::Trace& trace) {
     if (claim_) claim_->add(trace);
@@ -52,17 +52,17 @@ class TraceCertifier {
   /// Warns that there is nothing to prove.
   void decline(const std::string& reason);
 
-  /// The list is not what it claims to be, or nobody could tell.
+  /// The claim of the list was refuted, or the proof could not be checked.
   bool refuted() const { return verdict_ == "proof not accepted"; }
-  /// Without a proof: the claim rests on an argument by symmetry that nobody checked.
+  /// Records that the claim has no proof: it rests on an argument by symmetry.
   void rest_on_symmetry();
   /// `no proof`, `symmetry, not proof checked`, `proof checked`, `proof not accepted` or `proof not
   /// checked`.
   const std::string& verdict() const { return verdict_; }
   std::string proof_file() const { return files_ ? files_->proof_path().string() : ""; }
-  /// ` (proof checked)` after what claims to be complete, else nothing.
+  /// ` (proof checked)` or another verdict for a list that claims to be complete, else nothing.
   std::string remark(const std::string& exploration) const;
-  /// What made an accepted proof: `search` or `fresh solve`.
+  /// Origin of an accepted proof: `search` or `fresh solve`.
   const std::string& origin() const { return origin_; }
   /// `"proof":"checked","proof_origin":"search","proof_file":"..",`: none, checked, not accepted,
   /// not checked; the rest only with a proof that was accepted.

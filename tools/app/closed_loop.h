@@ -13,8 +13,8 @@
 
 namespace parallax::tools {
 
-/// A scenario's model and plan for closed loop: what the plan does is a walk through its unrolled
-/// graph, what the model admits is asked of the solver.
+/// A scenario's model and plan for closed loop: the plan is walked through its unrolled graph, and
+/// the solver decides what the model admits.
 class ClosedLoop final : public harness::LoopFeed {
  public:
   /// `loaded`, of load_scenario_run, and `context` outlive the object. Reports
@@ -52,7 +52,7 @@ class ClosedLoop final : public harness::LoopFeed {
   runtime::SolverSession session_;
   runtime::PathAdmission admission_;
   std::unique_ptr<ScenarioPlan> plan_;
-  // What initial_states was asked, and answered.
+  // Argument and result of the last call of initial_states.
   std::vector<compiler::FluentId> compared_;
   std::vector<std::vector<compiler::FluentId>> states_;
   std::unique_ptr<PlanCoverage> plan_coverage_;

@@ -23,14 +23,14 @@ struct ConsequenceFact {
   compiler::Timepoint time = 0;
   bool happens = false;
   runtime::Extent extent = runtime::Extent::kUndecided;
-  /// Of what is in all traces: a minimal set of axioms from which it follows (indices into
-  /// CompiledModel::origins). None: not asked for, or not found in time.
+  /// A minimal set of axioms from which the fact follows (indices into CompiledModel::origins), for
+  /// facts that are in all traces. None: not asked for, or not found in time.
   std::optional<std::vector<std::uint32_t>> axioms;
 };
 
 struct ModelConsequences {
-  /// By timepoint: fluents, then events, as declared. Without what is not in all traces, where only
-  /// that is asked for.
+  /// By timepoint: fluents, then events, as declared. Without facts that are not in all traces,
+  /// where only those are asked for.
   std::vector<ConsequenceFact> facts;
   std::optional<bool> any;  // is there a trace?
   bool complete = true;

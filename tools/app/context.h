@@ -9,9 +9,9 @@
 
 namespace parallax::tools {
 
-/// What functions of this library are given besides their options: the texts that were read, what
-/// was reported of them, whether to go on, and where answers go. A program that wants answers
-/// derives from it; as it stands they are dropped, and reports are found in the sink.
+/// Environment of this library's functions besides their options: the texts that were read, the
+/// diagnostics, the stop flag and the output. A program that wants the output derives from it; the
+/// base class drops output and collects diagnostics in the sink.
 class Context {
  public:
   struct Form {

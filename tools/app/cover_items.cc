@@ -91,7 +91,7 @@ void ScenarioCoverWatch::add_targets() {
       target.key = perform_key(id, perform.event, outcome);
       target.succeeded = succeeded;
       wanted_.insert(target.key);
-      // An event that no model has happens in none of its executions.
+      // An event without a slot is not in the model, so no execution has it.
       if (!target.slots.empty()) targets_.push_back(target);
     };
     add(true, "succeeds");
@@ -128,7 +128,7 @@ void ScenarioCoverWatch::add_targets() {
   }
 }
 
-/// In one of these ways the execution of `n` steps ends with the target.
+/// Alternative sets of literals with which an execution of `n` steps ends with the target.
 std::vector<std::vector<Literal>> ScenarioCoverWatch::ways_to(const Target& target,
                                                               Timepoint n) const {
   const auto& model = loaded_.compilation.model;
@@ -220,7 +220,7 @@ bool ScenarioCoverWatch::settle() {
   std::set_difference(wanted_.begin(), wanted_.end(), found_.begin(), found_.end(),
                       std::inserter(unreachable, unreachable.end()));
   for (const auto& key : plan_.all()) {
-    // How performs end, and which are tried again, the targets say more exactly.
+    // Outcomes and retries are covered by the targets, which are more exact.
     if (key.group != CoverageGroup::kBranches && key.group != CoverageGroup::kHandlers) continue;
     if (plan_.outcomes().contains(key) || plan_.without_performs().contains(key)) continue;
     const bool may_be = reach.found().contains(key) || reach.is_undecided(key);
@@ -232,7 +232,7 @@ bool ScenarioCoverWatch::settle() {
 
 void ScenarioCoverWatch::name_all(const std::set<CoverageKey>& items,
                                   const std::set<CoverageKey>& unreachable) {
-  // As they stand in the files.
+  // In the order of the files.
   const auto by_place = [](const std::set<CoverageKey>& keys) {
     std::vector<CoverageKey> out(keys.begin(), keys.end());
     std::stable_sort(out.begin(), out.end(), [](const CoverageKey& a, const CoverageKey& b) {
@@ -266,7 +266,7 @@ std::vector<std::size_t> ScenarioCoverWatch::shown_by(const harness::SampleRecor
     show(perform_key(id, step.event, outcome_of(step, graph.locations[id])));
   }
   if (!admitted || demanded_.empty()) return {shown.begin(), shown.end()};
-  // What else happened nobody performed: a trace of the model that goes the same way has it.
+  // Events that nobody performed are read from a trace of the model that goes the same way.
   std::set<std::string> missing;
   std::vector<harness::LoopFeed::ObservedFluents> states;
   const auto& scenario = loaded_.scenario;

@@ -19,12 +19,13 @@ namespace parallax::tools {
 /// "fails", "succeeds", "fails with navigation-pose-unreachable"
 std::string outcome_of(const harness::PathStep& step, const compiler::PlanLocation& location);
 
-/// What executions of a plan can show: ways of its branches, handlers, performs that are tried
-/// again, the outcomes of what is performed, and events that an axiom demands.
+/// Coverage items of executions of a plan: ways of its branches, handlers, performs that are tried
+/// again, the outcomes of performs, and events that an axiom demands.
 class ScenarioCoverWatch final : public harness::CoverWatch {
  public:
-  /// Asks the model what it has executions with, for more and more performs, as PlanReach does.
-  /// Null if the solver was stopped. The references and the run's comparison outlive the object.
+  /// Asks the solver which items executions of the model can show, for more and more performs, as
+  /// PlanReach does. Null if the solver was stopped. The references and the run's comparison
+  /// outlive the object.
   static std::unique_ptr<ScenarioCoverWatch> make(const ScenarioModel& loaded, ClosedLoop& loop,
                                                   const PlanCoverage& plan, std::uint64_t seed,
                                                   const base::SourceFiles& files);
@@ -34,7 +35,7 @@ class ScenarioCoverWatch final : public harness::CoverWatch {
   std::vector<std::size_t> shown_by(const harness::SampleRecord& record, bool admitted) override;
 
  private:
-  /// What has to be so at the last step of an execution, which ends with it.
+  /// Condition on the last step of an execution, which ends with it.
   struct Target {
     CoverageKey key;
     compiler::LocationId location;  // of a perform; else an event alone

@@ -31,14 +31,15 @@ bool same_trace(const harness::CampaignTrace& a, const harness::CampaignTrace& b
   return true;
 }
 
-/// The traces of the model that the run's are numbered by.
+/// The traces of the model in the numbering of the run.
 struct ListedTraces {
   std::vector<harness::CampaignTrace> traces;
   bool all = false;
 };
 
-/// At least those of the journal. A journal does not say whether it ran every hit, or every initial
-/// state: what it has tells. None: the model has no such traces.
+/// Lists at least the traces of the journal. A journal does not tell whether the run split initial
+/// states or took every hit, so the options are tried until the traces fit. None: the model has no
+/// such traces.
 std::optional<ListedTraces> list_traces(const compiler::CompiledModel& model,
                                         const harness::JournalText& journal, std::int64_t limit,
                                         Context& context) {
@@ -129,9 +130,8 @@ class Collector {
   Coverage take() { return std::move(coverage_); }
 
  private:
-  /// The simulations that show something, and nothing that was counted before: losses show nothing,
-  /// repetitions nothing new, and one draw of one scenario is one simulation, however often it is
-  /// on record.
+  /// The simulations that count: losses show nothing, repetitions nothing new, and one draw of one
+  /// scenario is one simulation, however often it is on record.
   std::vector<harness::SampleKey> to_count(const RunRecord& run) {
     std::vector<harness::SampleKey> out;
     std::int64_t known = 0;

@@ -53,14 +53,15 @@ struct ModelBehaviour {
 struct NeverShown {
   std::string scenario;
   ModelBehaviour behaviour;
-  // Of the scenario's executions whose start was drawn: those in which the model had it possible,
+  // Executions of the scenario with a drawn start: those in which the model allows the behaviour,
   // and all.
   std::int64_t possible = 0, executions = 0;
   double confidence = 0.0;
-  /// At this confidence it comes in fewer of the executions in which it is possible.
+  /// Upper confidence bound on the share of executions that show it, among those in which it is
+  /// possible.
   double bound = 1.0;
 };
-/// What executions did and the model has not.
+/// A behaviour that executions showed and the model does not have.
 struct WorldBehaviour {
   std::string scenario;
   std::string place;  // of the perform; empty at the start
@@ -78,19 +79,19 @@ struct Coverage {
   std::int64_t executions = 0;  // of the simulations, those in which the plan itself was executed
   std::vector<NeverShown> never_shown;
   std::vector<WorldBehaviour> lacking;
-  /// The model's traces that were looked at are all that it has, up to its bound.
+  /// The examined traces are all that the model has, up to its bound.
   bool all_traces = true;
 };
 
 struct CoverageOptions {
   std::vector<std::string> folders;
-  std::string scenario;       // of all of them, where it lies by now; may be empty
-  std::int64_t limit = 1000;  // traces of each model that are looked at; 0: all
+  std::string scenario;       // of all folders, if the file was moved; may be empty
+  std::int64_t limit = 1000;  // limit on examined traces of each model; 0: all
 };
 
-/// What recorded runs went through of their plans and models. Every folder is held
-/// against its scenario as `replay` does it: reports what read_journal, load_recorded_scenario and
-/// check_recorded_run report, and kCheckGivenUp for a model that is too large for the evaluator.
+/// Coverage of plans and models by recorded runs. Every folder is checked against its scenario as
+/// `replay` does it: reports what read_journal, load_recorded_scenario and check_recorded_run
+/// report, and kCheckGivenUp for a model that is too large for the evaluator.
 base::Result<Coverage> coverage_of(const CoverageOptions& options, Context& context);
 
 }  // namespace parallax::tools

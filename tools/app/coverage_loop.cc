@@ -26,7 +26,7 @@ compiler::TypedModel up_to(const compiler::TypedModel& model, std::int64_t last)
   return out;
 }
 
-/// Executions with equal texts are one to the model.
+/// A key of the execution: those with equal texts are the same for the model.
 std::string text_of(const SampleRecord& record, const std::vector<harness::LoopState>& states) {
   std::string out;
   for (std::size_t i = 0; i < record.path->steps.size(); ++i) {
@@ -89,7 +89,7 @@ base::Status LoopCoverage::add(const SampleRecord& record, std::uint64_t seed,
                            : judged_.emplace(text, judge(record, terms.comparison)).first->second;
   for (const auto& item : plan_.covered_by(*path)) ++hits_[item];
   for (const auto& item : judged.covered) ++hits_[item];
-  // A bound is about starts that were drawn; what a chosen one shows is shown all the same.
+  // The bound is about drawn starts only; behaviours shown from chosen ones still count as shown.
   const bool drawn = record.path->target.empty();
   if (drawn) {
     for (const auto& one : judged.possible) ++possible_[one];
@@ -129,7 +129,7 @@ LoopCoverage::Judged LoopCoverage::judge(const SampleRecord& record,
   const bool clean = judgement.admitted == Known::kYes;
   const auto& divergence = judgement.divergence;
   if (judgement.admitted == Known::kUndecided) return out;
-  // The events up to which the model can follow; a start that it has not is followed nowhere.
+  // The number of events that the model can follow; it follows none if it does not admit the start.
   const auto admitted = clean
                             ? performs.size()
                             : static_cast<std::size_t>(std::max<std::int64_t>(divergence.event, 0));

@@ -16,8 +16,8 @@
 
 namespace parallax::tools {
 
-/// What executions of a scenario's plan went through: the plan as it was walked, the model as one
-/// of its traces goes the same way. Add the runs, then take what they come to.
+/// Coverage by executions of a scenario's plan: the plan as it was walked, the model by one of its
+/// traces that goes the same way. Add the runs, then take the result.
 class LoopCoverage {
  public:
   /// The run's confidence and comparison; both outlive the object.
@@ -39,7 +39,7 @@ class LoopCoverage {
 
  private:
   using Fluents = harness::LoopFeed::ObservedFluents;
-  /// What is said of all executions that went the same way through the same states.
+  /// Coverage shared by all executions that went the same way through the same states.
   struct Judged {
     std::set<CoverageKey> covered;  // of the model
     std::set<ModelBehaviour> possible, shown;

@@ -12,7 +12,7 @@ using compiler::TypedFormulaId;
 
 namespace {
 
-/// One line, as the file has it; long ones are cut.
+/// A statement on one line, as in the file; long ones are cut.
 std::string one_line(std::string_view text) {
   constexpr std::size_t kMost = 100;
   std::string out;

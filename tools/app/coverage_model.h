@@ -14,7 +14,7 @@
 
 namespace parallax::tools {
 
-/// What there is to cover in a model, and what a trace covers of it.
+/// The coverage items of a model, and those that a trace covers.
 class ModelCoverage {
  public:
   /// All outlive the object; the evaluator refuses nothing.

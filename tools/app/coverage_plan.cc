@@ -18,7 +18,7 @@ using compiler::PlanBranch;
 using compiler::PlanLocation;
 using compiler::PlanTarget;
 
-// Ways between two performs that are told apart; more are not looked at.
+// Limit on the different ways between two performs that are examined.
 constexpr std::size_t kMaxWays = 256;
 
 /// A formula of a plan at one timepoint of a trace. Formulas are made for people to write in a

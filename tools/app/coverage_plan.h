@@ -19,8 +19,8 @@ namespace parallax::tools {
 CoverageKey coverage_key(CoverageGroup group, const base::SourceRange& source, std::string id,
                          const base::SourceFiles& files);
 
-/// What there is to cover in a plan, and what a trace covers of it. Performs that no way through
-/// the plan has are not among it.
+/// The coverage items of a plan, and those that a trace covers. Performs that no way through the
+/// plan reaches are left out.
 class PlanCoverage {
  public:
   /// All outlive the object.
@@ -31,9 +31,9 @@ class PlanCoverage {
   std::set<CoverageKey> covered_by(const PlanPath& path) const;
   /// How performs end, among `all`.
   const std::set<CoverageKey>& outcomes() const { return outcomes_; }
-  /// Handlers that take up no perform, only what the plan signals: no path covers them.
+  /// Handlers for signals of the plan alone, without performs: no path covers them.
   const std::set<CoverageKey>& without_performs() const { return without_performs_; }
-  /// Of a location: performs of the same `perform` that a way leads from to it again.
+  /// Locations of the same `perform` from which a way leads to this location again.
   const std::vector<compiler::LocationId>& earlier(compiler::LocationId location) const {
     return earlier_[location.index()];
   }

@@ -87,7 +87,7 @@ std::string_view lacking_text(const WorldBehaviour& one) {
   return one.event == "start" ? "it does not begin so" : "it has no such state after it";
 }
 
-/// What model and world have of each other, where plans were executed.
+/// Lists the behaviours that only the model or only the world has, where plans were executed.
 void add_differences(const Coverage& coverage, std::string& out) {
   const auto more = [&](std::size_t count) {
     if (count <= kMostListed) return;

@@ -31,7 +31,7 @@ struct ReportedDiscrepancy {
   std::string id() const { return fmt::format("{}.{}", trace, sample); }
 };
 
-/// None if an entry is none that `parallax run` writes.
+/// None if an entry is not in the format of `parallax run`.
 std::optional<ReportedDiscrepancy> decode(const json& entry) {
   const auto integer = [](const json& object, const char* name) {
     const auto* value = base::json_member(object, name);
@@ -58,7 +58,7 @@ std::optional<ReportedDiscrepancy> decode(const json& entry) {
   return out;
 }
 
-/// One discrepancy of report.json; none if the run has none. Reports one that is not there.
+/// One discrepancy of report.json; none if the run has none. Reports a number that does not exist.
 base::Result<std::optional<ReportedDiscrepancy>> find_discrepancy(const std::string& run_dir,
                                                                   const std::string& sample,
                                                                   base::DiagnosticSink& sink) {
@@ -84,8 +84,8 @@ base::Result<std::optional<ReportedDiscrepancy>> find_discrepancy(const std::str
                            : "it found discrepancies in " + others);
 }
 
-/// Does the journal show what the report tells? Of a trace, that it differs there so; of an
-/// executed plan, that each of the fluents was seen so.
+/// Does the journal confirm the report? For a trace, the observations differ there in these
+/// fluents; for an executed plan, each of the fluents was observed so.
 bool is_what_was_seen(const ReportedDiscrepancy& reported, const ScenarioModel& loaded,
                       const harness::CampaignTrace& trace, const harness::RecordedRun& run,
                       const ObservedPath& path) {

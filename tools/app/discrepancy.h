@@ -15,8 +15,8 @@
 
 namespace parallax::tools {
 
-/// A discrepancy of a recorded run: what one simulation went through, and where the scenario's
-/// model cannot follow.
+/// A discrepancy of a recorded run: the course of one simulation, and where the scenario's model
+/// cannot follow.
 struct RecordedDiscrepancy {
   ScenarioModel loaded;
   harness::JournalText journal;
@@ -30,7 +30,8 @@ base::Result<std::optional<RecordedDiscrepancy>> load_discrepancy(const RunFolde
                                                                   const std::string& sample,
                                                                   Context& context);
 
-/// What was seen, as a contradiction is held against it and as it is told.
+/// The observations of a discrepancy: as literals for the contradiction search, and as lines of
+/// text.
 ObservedRun observed_run(const RecordedDiscrepancy& found);
 
 /// The sets that an explanation tells, best first: the one about the first difference, else a

@@ -10,7 +10,7 @@
 
 namespace parallax::tools {
 
-/// Texts in the place of those that a scenario names.
+/// Texts that replace those that a scenario names.
 struct EditedTexts {
   std::optional<std::string> model;
   std::map<std::string, std::string> plan;  // by the name of the file; others stay as they are

@@ -104,8 +104,8 @@ std::string typed(const compiler::ModelAst& ast, const compiler::CheckOptions& c
          });
 }
 
-/// The atoms of user predicates that the compiled model has. None: it cannot be grounded, which is
-/// no reason not to hand it to another solver.
+/// The atoms of user predicates that the compiled model has. None: it cannot be grounded, but may
+/// still be handed to another solver.
 std::optional<std::vector<std::string>> open_atoms(const compiler::TypedModel& model,
                                                    const compiler::GroundOptions& options) {
   base::DiagnosticSink silent;

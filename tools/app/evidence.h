@@ -15,7 +15,7 @@
 
 namespace parallax::tools {
 
-/// What all recorded simulations of a trace say of the kind of cause.
+/// Evidence for the kind of cause, from all recorded simulations of a trace.
 struct CauseEvidence {
   harness::CauseFinding finding;
   std::vector<std::string> parameters;  // of the start, those that differ from run to run
@@ -27,7 +27,7 @@ struct CauseEvidence {
   std::string words() const { return harness::cause_words(finding, parameters); }
 };
 
-/// What the starts of simulations of one trace say of why some of them failed.
+/// Finds out from the starts of one trace's simulations why some of them failed.
 CauseEvidence cause_of(const std::vector<const harness::State*>& starts,
                        const std::vector<bool>& failed, bool world_is_model,
                        const std::vector<harness::CauseBorder>& borders = {});
@@ -40,23 +40,23 @@ base::Result<CauseEvidence> gather_evidence(const std::string& run_dir,
                                             const std::vector<harness::SampleRecord>& further,
                                             Context& context);
 
-/// How many of these simulations, of the same trace or of executions, go wrong like the
-/// discrepancy; numbered from 1, as none of the journal has to be. Those that tell nothing are left
-/// out.
+/// Number of these simulations, of the same trace or of executions, that go wrong like the
+/// discrepancy; they are numbered from 1, whatever the numbers in the journal. Simulations that
+/// tell nothing are left out.
 base::Result<harness::Persistence> count_failures(const RecordedDiscrepancy& found,
                                                   const std::vector<harness::SampleRecord>& records,
                                                   Context& context);
 
 struct FurtherRunsOptions {
-  std::int64_t runs = 60;    // at most so many, counted with those made earlier
-  std::int64_t enough = 10;  // until so many have failed, and as many or none at all have not
+  std::int64_t runs = 60;    // limit, counted with those made earlier
+  std::int64_t enough = 10;  // enough failures, with as many clean runs or none at all
   std::int64_t jobs = 1;
   std::function<void(const harness::CampaignProgress&)> progress;
   std::int64_t repeats = 5;    // of the failing start, of either kind (same_start_runs)
   bool without_seeds = false;  // also where the simulator takes no seeds and is not deterministic
 };
 
-/// Do so many failed and clean runs say enough?
+/// Are this many failed and clean runs enough evidence?
 inline bool is_enough(const FurtherRunsOptions& options, std::int64_t failures,
                       std::int64_t clean) {
   return failures >= options.enough && (clean == 0 || clean >= options.enough);

@@ -17,11 +17,11 @@
 
 namespace parallax::tools {
 
-/// The plan of a scenario, executed: a walk through its graph. Guards are asked of what the
+/// Executes the plan of a scenario by a walk through its graph. Guards are evaluated on what the
 /// simulator shows, by the scenario's mapping. A perform succeeds if the simulator says so; in a
-/// world that is a model, which carries out events and judges none, if the formula of success holds
-/// in what it shows, too. One that returns an object returns what the simulator names, or else any
-/// one for which that formula holds.
+/// world that is a model, which carries out events and judges none, the formula of success must
+/// also hold in the state that it shows. One that returns an object returns the object that the
+/// simulator names, or else any one for which that formula holds.
 class ScenarioPlan final : public harness::ExecutablePlan {
  public:
   /// `loaded` outlives the object.

@@ -11,8 +11,8 @@
 
 namespace parallax::tools {
 
-/// Could a run of the scenario, in closed loop with this seed, have come to a recorded execution?
-/// Every command that reads journals asks here; `run --resume` asks the same of its own samples.
+/// Could a run of the scenario, in closed loop with this seed, have led to a recorded execution?
+/// Used by every command that reads journals, and by `run --resume` for its own samples.
 class ExecutionCheck {
  public:
   /// `loaded` and `context` outlive the object. Reports what ClosedLoop reports. Null if it was
@@ -20,8 +20,9 @@ class ExecutionCheck {
   static base::Result<std::unique_ptr<ExecutionCheck>> make(const ScenarioModel& loaded,
                                                             std::uint64_t seed, Context& context);
 
-  /// What is wrong with it: the state that it began in, its start and seed, or what the plan makes
-  /// of what was seen. Empty: nothing. A state that was chosen (`starts: guided`) may be any.
+  /// Describes why a record cannot be an execution of the plan: its initial state, its start and
+  /// seed, or what the plan makes of the observations. Empty: nothing is wrong. A chosen initial
+  /// state (`starts: guided`) may be any.
   std::string wrong(const harness::SampleRecord& record) const;
 
  private:

@@ -23,7 +23,8 @@ using compiler::Timepoint;
 
 namespace {
 
-/// What finding needed instances may cost, for all sets together: a fraction of the time there is.
+/// Budget in conflicts for finding needed instances, for all sets together: a fraction of the time
+/// limit.
 runtime::Effort effort_of(double time_limit_s) {
   constexpr double kMost = 100'000, kEachSecond = 5'000;  // conflicts
   const auto most = time_limit_s > 0 ? std::min(kMost, kEachSecond * time_limit_s) : kMost;

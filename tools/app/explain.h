@@ -20,11 +20,11 @@ struct SetOptions {
   std::int64_t limit = 0;  // of --all; 0: no limit
 };
 
-/// What a simulation showed, for the axioms to be held against.
+/// The observations of a simulation, to be checked against the axioms.
 struct ObservedRun {
   runtime::Observed observed;
   std::vector<std::string> lines;  // how it is told: "RobotAt(bTable) does not hold at 6"
-  std::size_t shown_from = 0;      // the lines before are told to those who ask for more
+  std::size_t shown_from = 0;      // earlier lines are shown on request only
 };
 
 /// An axiom of a contradiction, with those of its ground instances that take part.
@@ -33,7 +33,7 @@ struct BlamedAxiom {
   std::vector<std::string> instances;  // as formulas, by timepoint
 };
 
-/// A minimal set of axioms, looked at closely.
+/// A minimal set of axioms, examined closely.
 struct Contradiction {
   std::vector<BlamedAxiom> axioms;
   bool instances_minimal = false;  // none of the instances can go
@@ -41,8 +41,8 @@ struct Contradiction {
   std::vector<std::size_t> clauses;  // the instances, as GroundContradiction has them
 };
 
-/// Why has a model no trace, or none that is like a run that was observed? First the minimal sets
-/// of its axioms are found; each may then be looked at closely, which takes its time.
+/// Explains why a model has no trace, or none like an observed run. First the minimal sets of its
+/// axioms are found; each may then be examined closely, which takes longer.
 class ContradictionSearch {
  public:
   /// Model and context outlive the search.

@@ -17,7 +17,7 @@
 
 namespace parallax::tools {
 
-/// What a run has recorded besides: a folder within that of the run.
+/// A folder of further recordings within the folder of a run.
 struct ExtraFolder {
   std::string run_dir, name;  // "out/plan2", "experiments"
   harness::JournalHeader header;
@@ -25,12 +25,12 @@ struct ExtraFolder {
 
 struct ExtraRunsOptions {
   std::int64_t jobs = 1;
-  std::int64_t most = 0;  // for progress: so many may be made
+  std::int64_t most = 0;  // limit, for progress
   std::function<void(const harness::CampaignProgress&)> progress;
 };
 
-/// Simulations that are made on top of those of a run and recorded in a folder of their own, in a
-/// journal as that of the run, which stays as it is.
+/// Simulations besides those of a run, recorded in a folder of their own, in a journal like that of
+/// the run, which stays unchanged.
 class ExtraRuns {
  public:
   /// The scenario as it is run, and all else, outlives the object. Null if it was stopped. Reports
@@ -53,11 +53,11 @@ class ExtraRuns {
   /// Its start with a sampler; reports as prepare_trace does.
   base::Result<harness::PreparedTrace> prepare_start(const harness::CampaignTrace& trace);
 
-  /// What is simulated: samples of one trace, or executions (without a line, as trace 1).
+  /// The simulations to make: samples of one trace, or executions (without a line, as trace 1).
   struct Stream {
     const harness::TraceLine* line = nullptr;
     std::shared_ptr<const harness::SampleMaker> maker;
-    /// In which the sample has to begin: one timepoint without events, by in_symbols.
+    /// The state in which the sample has to begin: one timepoint without events, by in_symbols.
     std::shared_ptr<const harness::CampaignTrace> start;
     /// Its starts were chosen: one that is not valid, or begins elsewhere, is no error.
     bool chosen = false;
@@ -66,7 +66,7 @@ class ExtraRuns {
   /// was lost too often, which was reported. Reports starts and actions that the simulator does not
   /// take.
   base::Result<bool> make(const Stream& stream, std::int64_t first, std::int64_t last);
-  /// What was reported last is that no draw was a valid start.
+  /// The last report was that no draw was a valid start.
   bool rejected() const { return rejected_; }
   /// Writes the journal in order; nothing can be made afterwards.
   base::Status close();

@@ -76,7 +76,7 @@ std::string_view what_it_is(FileKind kind) {
   return "";
 }
 
-/// Which command takes it.
+/// The command that takes files of this kind.
 std::string what_takes(FileKind kind, const std::string& path) {
   const auto with = [&](const char* pattern) {
     return "Try " + fmt::format(fmt::runtime(pattern), path) + '.';

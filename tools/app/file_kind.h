@@ -9,7 +9,7 @@
 
 namespace parallax::tools {
 
-/// What a file is, by its name's ending, or by its first bytes where they cannot be text.
+/// Kind of a file, by the ending of its name, or by its first bytes where they cannot be text.
 enum class FileKind : std::uint8_t {
   kUnknown,  // anything else, and what cannot be read: whoever reads it says what is wrong
   kModel,
@@ -25,7 +25,7 @@ enum class FileKind : std::uint8_t {
 };
 FileKind file_kind(const std::string& path);
 
-/// Reports (E0010) a file of a kind that is none of these, with the command that takes it; `wanted`
+/// Reports (E0010) a file whose kind is not among `kinds`, with the command that takes it; `wanted`
 /// says what belongs there, "a model".
 base::Status expect_kind(const std::string& path, std::initializer_list<FileKind> kinds,
                          std::string_view wanted, Context& context);

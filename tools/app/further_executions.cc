@@ -15,7 +15,7 @@ using harness::DrawPhase;
 using harness::SampleRecord;
 using harness::SampleStatus;
 
-/// So many at a time, whatever the number of workers.
+/// Size of a batch, whatever the number of workers.
 constexpr std::int64_t kAtOnce = 5;
 constexpr const char* kWhy = "to tell the kind of cause";
 

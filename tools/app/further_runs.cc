@@ -63,7 +63,8 @@ class FurtherRuns {
   }
 
  private:
-  /// What the run has on record is there already, so that it is not made again.
+  /// Opens the journal of further runs with the run's own records in it, so that none is made
+  /// again.
   base::Result<std::unique_ptr<harness::Journal>> open(const std::string& run_dir) {
     auto& sink = context_.sink();
     const auto& header = *found_.journal.header;
@@ -84,7 +85,7 @@ class FurtherRuns {
                                   scenario_.limits.max_lost_in_a_row, context_.files(), sink);
   }
 
-  /// None if it is not found again: it was one of a run with other options.
+  /// None if the trace is not found again: it belongs to a run with other options.
   base::Result<std::optional<harness::CampaignTrace>> this_trace() {
     const auto& id = found_.path.id;
     while (true) {
@@ -98,7 +99,7 @@ class FurtherRuns {
     }
   }
 
-  /// Those on record must be what is drawn for their numbers.
+  /// Recorded samples must be the draws for their numbers.
   base::Status check_draws(const harness::Journal& journal, const harness::TracePlan& plan) {
     for (const auto& [key, record] : journal.recorded().samples) {
       const auto place = journal.recorded().places.find(key);
@@ -120,7 +121,7 @@ class FurtherRuns {
     const auto started = std::chrono::steady_clock::now();
     std::int64_t failures = 0, clean = 0, made = 0;
     while (!is_enough(options_, failures, clean) && made < options_.runs) {
-      // Samples on record cost nothing and count as failures only.
+      // Samples on record count as failures or clean runs, but not towards the limit of runs.
       const auto ahead = std::min(options_.jobs == 1 ? 1 : 2 * options_.jobs, options_.runs - made);
       trial.submit_to(trial.next_sample() + ahead - 1);
       auto sample = trial.next();

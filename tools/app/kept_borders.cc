@@ -19,7 +19,7 @@ std::optional<T> kept_member(const nlohmann::json& object, const char* name) {
   return value == nullptr ? std::nullopt : base::json_as<T>(*value);
 }
 
-/// A parameter's entry; none if it is none, or of another start.
+/// The entry of a parameter; none if it is malformed, or about another start.
 std::optional<harness::CauseBorder> kept_border_of(const nlohmann::json& entry,
                                                    const harness::State& start, bool& is_of_start) {
   const auto name = kept_member<std::string>(entry, "parameter");

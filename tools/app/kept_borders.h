@@ -8,7 +8,7 @@
 
 namespace parallax::tools {
 
-/// Where `parallax confirm` keeps in a run folder what it found out.
+/// The folder in a run folder where `parallax confirm` keeps its findings.
 inline constexpr const char* kConfirmFile = "confirm/confirm.json";
 
 /// The borders that `parallax confirm` found of this simulation, if it was confirmed; empty where

@@ -17,7 +17,7 @@ enum class MonitorVerdict : std::uint8_t { kConsistent, kInconsistent, kUndecide
 /// "consistent", "inconsistent", "undecided"
 std::string_view to_string(MonitorVerdict verdict);
 
-/// The first place of a log that the model does not admit, or from which on nothing is said.
+/// The first place of a log that the model does not admit, or from which on nothing is claimed.
 struct MonitorPlace {
   std::int64_t line = 0;       // of the log, from 1; of a recorded simulation 0
   std::int64_t timepoint = 0;  // steps of the log before it
@@ -48,7 +48,7 @@ struct MonitorResult {
   double wall_s = 0.0;
 };
 
-/// Takes into the result what the watch said of the log at `place`; false: it ends there.
+/// Adds the watch's verdict on the log at `place` to the result; false: the log ends there.
 bool take_admission(Watch& watch, runtime::Admission admission, const MonitorPlace& place,
                     MonitorResult& result);
 

@@ -33,10 +33,10 @@ using Clock = std::chrono::steady_clock;
 /// Lines between two looks at the clock.
 constexpr std::int64_t kLinesPerLook = 256;
 constexpr std::chrono::milliseconds kProgressEvery(500);
-/// So many variables are named in the result.
+/// Number of variables that are named in the result.
 constexpr std::size_t kMostNamed = 20;
 
-/// Editors of some systems begin a text with it.
+/// The byte order mark, with which some editors begin a text.
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// ASCII without NUL, as nearly all lines are.
@@ -160,7 +160,7 @@ class LogWatcher {
     return std::nullopt;
   }
 
-  /// What the entry says, in order: a step, an action that is begun, a state.
+  /// Follows the parts of the entry in order: a step, the begin of an action, a state.
   bool follow() {
     if (any_ && entry_.t < t_) {
       return refuse({1, fmt::format("time runs backwards: {:.9g} s after {:.9g} s", entry_.t, t_)});
@@ -206,7 +206,7 @@ class LogWatcher {
     return note(watch_.observe(entry_.values, at_start), here());
   }
 
-  /// What is compared at rest only is compared with the last thing that was seen.
+  /// Compares the fluents that are compared at rest only with the last observation.
   void end() {
     if (!under_way_.empty()) return note_unended();
     if (!unsettled_) return;

@@ -36,7 +36,7 @@ MonitorResult not_checked(const SampleRecord& record) {
   return out;
 }
 
-/// A variable that is no such thing as the mapping asks for; empty: there is none.
+/// A variable whose type does not fit the mapping; empty: there is none.
 std::string misfit(const harness::ObservationReader& reader, const SampleRecord& record) {
   for (std::size_t t = 0; t < record.observations.size(); ++t) {
     for (std::size_t v = 0; v < reader.variables().size(); ++v) {

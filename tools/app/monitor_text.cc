@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// So many fluents and plan steps are spelled out in the text.
+/// Number of fluents and plan steps that are spelled out in the text.
 constexpr std::size_t kMostShown = 8;
 
 template <typename Count>

@@ -86,13 +86,13 @@ class PathReader {
     }
     const auto compare = recorded_comparison(run.header).value_or(loaded_.scenario.comparison());
     if (compare == Comparison::kFinal) keep_what_lasts(trace, path);
-    // The trace begins in one state; what is not compared of it was chosen with it.
+    // The trace begins in one state; fluents that are not compared were chosen with it.
     if (!path.executed) path.states.front() = start_of(trace, symbols_);
     return path;
   }
 
  private:
-  /// Where the end alone is compared, what differs on the way and comes back is no difference.
+  /// Where only the end is compared, differences on the way that vanish again do not count.
   void keep_what_lasts(const harness::CampaignTrace& trace, ObservedPath& path) const {
     const auto last = path.states.size() - 1;
     for (std::size_t t = 1; t < last; ++t) {

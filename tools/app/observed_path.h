@@ -28,7 +28,7 @@ struct ObservedStep {
   std::string object;                           // likewise, what it found
 };
 
-/// What a recorded simulation went through, in the ids of a compiled model.
+/// The course of a recorded simulation, in the ids of a compiled model.
 struct ObservedPath {
   using State = std::map<compiler::FluentId, bool>;
 
@@ -37,13 +37,14 @@ struct ObservedPath {
   bool executed = false;    // the plan was, in closed loop
   std::vector<ObservedStep> steps;
   std::vector<harness::LoopState> points;  // as it was seen, one more than steps
-  /// By timepoint what is held against the model. At the start of a trace all fluents, as the trace
-  /// begins there; else what is compared and was seen. Where the end alone is compared: of the
-  /// states on the way what the trace and the simulation agree on, up to where they part for good.
+  /// The fluents that are compared with the model, by timepoint. At the start of a trace all
+  /// fluents, as the trace begins there; else those that are compared and were observed. Where only
+  /// the end is compared: for states on the way, the values on which trace and simulation agree, up
+  /// to where they part for good.
   std::vector<State> states;
   harness::State start;  // the continuous state that was drawn
 
-  /// No state of a model stands for what was seen at `t`, and that is compared.
+  /// No state of a model corresponds to the observation at `t`, and that is compared.
   bool in_no_state(std::size_t t) const {
     return !states[t].empty() && points[t].state.in_no_state;
   }
@@ -60,13 +61,13 @@ base::Result<std::vector<ObservedPath>> observed_paths(const ScenarioModel& load
 base::Result<ObservedPath> observed_path(const ScenarioModel& loaded,
                                          const harness::RecordedRun& run, Context& context);
 
-/// What is the case of a model's atoms in observed paths.
+/// States observed paths as literals of a model's atoms.
 class PathFacts {
  public:
   /// `model` outlives the object.
   explicit PathFacts(const compiler::CompiledModel& model) : admission_(model) {}
-  /// That the first `steps` steps happen, the first `outcomes` of them (of an executed plan) with
-  /// their outcomes, through these states. None: some of it is false in every execution.
+  /// States that the first `steps` steps happen, the first `outcomes` of them (of an executed plan)
+  /// with their outcomes, through these states. None: some of it is false in every execution.
   std::optional<std::vector<compiler::Literal>> facts(
       const ObservedPath& path, std::size_t steps, std::size_t outcomes,
       std::span<const ObservedPath::State> states) const;

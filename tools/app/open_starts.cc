@@ -20,7 +20,7 @@ namespace {
 using compiler::FluentId;
 using compiler::Literal;
 
-// Of initial states that agree on what is compared; then no more is looked for.
+// Limit on the assignments of the compared fluents that are examined.
 constexpr std::size_t kMostStates = 200;
 
 /// Finds ignored fluents in which two initial states differ that agree on all compared ones.
@@ -78,7 +78,7 @@ class OpenFluents {
   std::set<FluentId> open_;
 };
 
-/// What a world that is a model has of its own: it draws these itself.
+/// Parameters of a world that is a model, which it draws itself.
 std::set<std::string> observed_by(const ScenarioModel& loaded) {
   std::set<std::string> out;
   if (!loaded.world) return out;

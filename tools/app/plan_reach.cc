@@ -14,9 +14,9 @@ using runtime::SolveStatus;
 
 namespace {
 
-// From one perform to the next; what lies behind so many branches is not looked for.
+// Ways from one perform to the next; more behind further branches are not looked for.
 constexpr std::size_t kMaxWaysFromOne = 1024;
-// Of one way and one number of steps: answers that went another one between the same performs.
+// Limit, per way and number of steps, on answers that took another way between the same performs.
 constexpr int kMaxRefinements = 64;
 
 compiler::PlanStepId step_of(LocationId id) {
@@ -93,7 +93,7 @@ std::optional<Literal> PlanReach::choice(BranchId branch, Timepoint t) const {
                      compiler::PlanChoiceId(static_cast<std::uint32_t>(branch.index())), t);
 }
 
-/// None: no execution goes that way at this time. Guards are not among them: an answer may go
+/// None: no execution goes that way at this time. Guards are not included: an answer may take
 /// another way between the same performs.
 std::optional<std::vector<Literal>> PlanReach::literals(const Way& way, Timepoint n) const {
   std::vector<Literal> out;
@@ -188,7 +188,7 @@ bool PlanReach::refine(OpenWay& open, const ReachingTrace& answer, Timepoint n) 
   const auto& point = answer.trace.points.back();
   for (const auto& [branch, side] : open.way->decisions) {
     if (graph_.branches[branch].free || holds(branch, point) == side) continue;
-    // As long as all that the guard reads is as it was here, it decides as it did.
+    // The guard decides the same again as long as everything that it reads has these values.
     std::vector<Literal> other = {~open.goes};
     for (const auto number : loop_.scenario_plan().questions().of_guard(branch).fluents) {
       const auto literal =
@@ -237,7 +237,7 @@ std::optional<ReachingTrace> PlanReach::whole(const std::vector<compiler::Fluent
   return read(model.horizon);
 }
 
-/// With the free choices of the valuation at hand, which has the trace.
+/// Uses the free choices of the current valuation, which belongs to the trace.
 PlanPath PlanReach::path_of(const runtime::Trace& trace) {
   const auto is_chosen = [&](BranchId branch, Timepoint t) {
     const auto literal = choice(branch, t);

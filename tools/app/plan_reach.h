@@ -19,9 +19,9 @@ struct ReachingTrace {
   PlanPath path;
 };
 
-/// What of a plan the executions of its model go through, and a shortest one for each. The model
-/// is asked for more and more steps which ways between two performs are open that nothing has gone
-/// through yet; one solver call for each answer and each number of steps.
+/// The parts of a plan that executions of its model go through, with a shortest execution for each.
+/// For more and more steps, the solver is asked which ways between two performs are open that no
+/// execution has taken yet; one solver call for each answer and each number of steps.
 class PlanReach {
  public:
   /// All outlive the object.
@@ -33,12 +33,12 @@ class PlanReach {
   const std::map<CoverageKey, std::shared_ptr<const ReachingTrace>>& found() const {
     return found_;
   }
-  /// After `run`: was it given up to look for a way through the item, so that there may be one
+  /// After `run`: was the search for a way through the item given up, so that there may be one
   /// although none was found?
   bool is_undecided(const CoverageKey& key) const {
     return !found_.contains(key) && (too_many_ways_ || given_up_.contains(key));
   }
-  /// Nothing happens before `n` that nobody performs and nothing demands.
+  /// Literals for: before `n`, no event happens that nobody performs and nothing demands.
   std::vector<compiler::Literal> nothing_idle(compiler::Timepoint n) const;
   /// An execution to the end of the plan, or to the horizon, that begins in this state: the true
   /// ones of `fluents`. None: the model has none, or the solver was stopped.
@@ -46,7 +46,7 @@ class PlanReach {
                                      const std::vector<compiler::FluentId>& fluents);
 
  private:
-  /// From where a perform leaves, or from the entry, through branches to what comes next.
+  /// A way from a perform, or from the entry, through branches to the next perform or an end.
   struct Way {
     std::optional<compiler::LocationId> from;  // none: the entry
     bool succeeded = false;
@@ -69,7 +69,8 @@ class PlanReach {
   bool look_at(compiler::Timepoint n);
   ReachingTrace read(compiler::Timepoint n);
   bool holds(compiler::BranchId branch, const runtime::TracePoint& point) const;
-  /// Forbids the way what made a guard on it decide otherwise. False: it is settled.
+  /// Excludes the values with which a guard on the way decided otherwise. False: the way is
+  /// settled.
   bool refine(OpenWay& open, const ReachingTrace& answer, compiler::Timepoint n);
   PlanPath path_of(const runtime::Trace& trace);
 

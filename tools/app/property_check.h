@@ -17,7 +17,7 @@ struct PropertyBreak {
   std::string text;  // "does not hold at timepoint 3"
 };
 
-/// Holds the trace that is said to violate a property against the property by independent means.
+/// Checks by independent means that a trace violates a property.
 class PropertyCheck {
  public:
   /// All outlive the check. `strict`: that the check cannot be made is an error (E7202).
@@ -25,8 +25,8 @@ class PropertyCheck {
                 bool strict, Context& context)
       : typed_(typed), property_(property), strict_(strict), context_(context) {}
 
-  /// None: it could not be found out, or the property is true of the trace, which is reported as
-  /// the disagreement that it is (E7201).
+  /// None: the check could not be made, or the property holds in the trace, which is reported as a
+  /// disagreement (E7201).
   std::optional<PropertyBreak> broken(const runtime::Trace& trace);
 
  private:

@@ -29,7 +29,7 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, error);
 }
 
-/// The recorded trace in the ids of the model. None if it names what the model has not.
+/// The recorded trace in the ids of the model. None if it has names that the model does not have.
 std::optional<harness::CampaignTrace> in_ids_of(const compiler::CompiledModel& model,
                                                 const harness::CampaignTrace& recorded) {
   const auto symbols = std::make_shared<compiler::SymbolTable>(model);
@@ -68,7 +68,7 @@ bool is_key_of(const harness::CampaignTrace& trace, std::string_view key) {
   return key.empty() || key == fmt::format(" from {}", fmt::join(trace.holds(0), ";"));
 }
 
-/// What is wrong with a trace that a journal has; empty: nothing, or it is not known.
+/// Describes why a trace of a journal is not one of the model; empty: it is, or that is not known.
 std::string wrong_trace(const compiler::CompiledModel& model, const harness::CampaignTrace& trace,
                         const Context& context) {
   runtime::TraceReplay replay(model,
@@ -96,7 +96,8 @@ std::string wrong_trace(const compiler::CompiledModel& model, const harness::Cam
   return {};
 }
 
-/// What is wrong with the calls, as far as they do not depend on what the plan gives.
+/// Describes the first wrong call, as far as calls do not depend on the plan's arguments; empty:
+/// none.
 std::string wrong_calls(const harness::Scenario& scenario, const harness::TraceLine& line) {
   for (std::size_t t = 0; t < line.calls.size(); ++t) {
     const auto event = harness::ground_fluent(line.trace->event(t));
@@ -115,7 +116,8 @@ std::string wrong_calls(const harness::Scenario& scenario, const harness::TraceL
   return {};
 }
 
-/// What draws the starts of simulations of the trace, whose ids are the model's. None: nothing can.
+/// The sampler for the starts of the trace's simulations; ids are the model's. None: nothing can
+/// draw them.
 std::optional<harness::Sampler> sampler_of(const harness::Scenario& scenario,
                                            const harness::CampaignTrace& trace) {
   base::DiagnosticSink unread;
@@ -226,7 +228,7 @@ base::Result<harness::CampaignTrace> check_recorded_run(const ScenarioModel& loa
   if (!trace) return foreign(run.trace_source, "it names what the model has not");
   auto why = wrong_calls(loaded.scenario, run.line);
   if (why.empty() && run.record.path) {
-    // An executed plan has no trace: what it does need not be what the model admits.
+    // An executed plan has no trace: its course need not be one that the model admits.
     const auto check = ExecutionCheck::make(loaded, run.header.seed, context);
     if (!check) return sink.already_reported();
     if (*check) why = (*check)->wrong(run.record);

@@ -10,15 +10,15 @@ namespace parallax::tools {
 /// A run folder as the command line names it.
 struct RunFolderOptions {
   std::string folder;
-  std::string scenario;  // where it lies by now; empty: where the journal says
+  std::string scenario;  // if the file was moved; empty: where the journal says
 };
 
 /// Where the scenario of a run lies: a relative path starts in the folder that the run was started
 /// in, or in the current folder if nothing lies there.
 std::filesystem::path scenario_path(const harness::JournalHeader& header);
 
-/// What the run compared, and how it went, whatever the scenario says by itself. The first is none
-/// where the journal does not say.
+/// The comparison and execution mode of the run, whatever the scenario says by itself. The first is
+/// none where the journal does not say.
 std::optional<harness::Comparison> recorded_comparison(const harness::JournalHeader& header);
 harness::Execution recorded_execution(const harness::JournalHeader& header);
 

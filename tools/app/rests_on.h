@@ -12,8 +12,8 @@
 
 namespace parallax::tools {
 
-/// A known discrepancy that executions of a model go through: what holds in the model behind its
-/// event is not what the world showed there.
+/// A known discrepancy that executions of a model go through: the model's state after its event is
+/// not the one that the world showed there.
 struct RestsOn {
   const harness::LedgerEntry* entry = nullptr;
   base::Known goes_through = base::Known::kYes;  // or kUndecided: the solver was stopped

@@ -10,12 +10,13 @@
 namespace parallax::tools {
 namespace {
 
-/// A report is not worth waiting for: larger models are left to `parallax coverage`.
+/// Limit on the model's size: larger models are left to `parallax coverage`, so that no report has
+/// to wait.
 constexpr std::int64_t kMaxInstances = 2'000'000;
 
 using Shares = std::vector<harness::CoverageShare>;
 
-/// Of the groups that have something in them. Traces are counted elsewhere in a report.
+/// Shares of the groups that are not empty. Traces are counted elsewhere in a report.
 Shares shares(const std::set<CoverageKey>& all, const std::set<CoverageKey>& covered) {
   Shares out;
   for (std::size_t i = 0; i < kCoverageGroups.size(); ++i) {
@@ -57,7 +58,7 @@ Shares of_traces(const ScenarioModel& loaded, const harness::CampaignResult& res
 }
 
 Shares of_executions(const harness::CampaignResult& result, Context& context) {
-  // What is wrong with it is not the run's to say.
+  // Errors of the coverage are not reported as errors of the run.
   Context own(context.form(), context.stop());
   const auto coverage = coverage_of({{result.replay_folder}, result.scenario, 1}, own);
   if (!coverage) return {};

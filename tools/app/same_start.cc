@@ -38,7 +38,7 @@ class OtherSeeds final : public harness::SampleMaker {
   }
 
  private:
-  /// What the plan would be told of its performs.
+  /// Sets the outcomes of the performs as the plan would be told them.
   static void told_anew(SampleRecord& record) {
     for (std::size_t i = 0; i < record.outcomes.size(); ++i) {
       auto& step = record.path->steps[i];

@@ -157,7 +157,7 @@ std::vector<harness::GroundFluent> ground_of(const Named& all) {
   return out;
 }
 
-/// What the events of a trace cause, with the arguments that the plan gives them.
+/// Fluents that the events of a trace cause, with the arguments that the plan gives them.
 std::vector<harness::CausedFluent> planned_fluents(
     const harness::CampaignTrace& trace, const std::vector<harness::CausedFluent>& caused) {
   std::vector<harness::CausedFluent> out;
@@ -172,7 +172,7 @@ std::vector<harness::CausedFluent> planned_fluents(
   return out;
 }
 
-/// Of a plan that is to be executed: what it asks and performs, where it can begin.
+/// Checks a plan that is to be executed: its conditions and performs, and its initial states.
 void check_before_executions(const ScenarioModel& loaded, Context& context) {
   auto& sink = context.sink();
   const auto& scenario = loaded.scenario;

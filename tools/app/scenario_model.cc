@@ -61,7 +61,7 @@ class RegionLocator final : public compiler::PoseLocator {
   }
 
  private:
-  /// An angle counts as outside, not as a distance.
+  /// An angle counts as outside the region, not as a distance.
   Nearest distance(const harness::Region& region, const harness::Point& at) const {
     double squared_m2 = 0.0;
     std::string outside;
@@ -200,7 +200,7 @@ std::vector<harness::GroundFluent> ground_fluents(const std::vector<std::string>
   return out;
 }
 
-/// Notes the files that the simulator's command names: another program may answer otherwise.
+/// Notes the files that the simulator's command names: with another program the results may differ.
 void note_command(const std::vector<std::string>& command, base::SourceFiles& files) {
   const auto named = harness::files_of_command(command);
   for (const auto* places : {&named.found, &named.absent}) {
@@ -208,7 +208,7 @@ void note_command(const std::vector<std::string>& command, base::SourceFiles& fi
   }
 }
 
-/// A plan that is executed goes on to its end, whatever holds on its way.
+/// An executed plan goes on to its end, whether or not the constraints hold on its way.
 void execute(const harness::Scenario& scenario, compiler::CompileInput& input) {
   input.plan->failures_by_reason = true;
   input.constraints.clear();
@@ -417,7 +417,7 @@ base::Result<ScenarioModel> load_compared_scenario(const std::filesystem::path& 
   if (!loaded) return context.sink().already_reported();
   const auto& command = loaded->scenario.simulator.command;
   if (!command.empty()) {
-    // What the files say that it names; its words are a setting of their own.
+    // Content of the files that the command names; its words are a setting of their own.
     harness::insert(settings, {{"simulator", "command", "files"},
                                "SHA-256 " + harness::hash_of_command(command),
                                std::nullopt,

@@ -43,13 +43,13 @@ base::Result<ScenarioModel> load_scenario_run(const std::filesystem::path& path,
                                               std::optional<harness::Execution> execution,
                                               Context& context, bool lint = false);
 
-/// Reads the scenario, compiles model, plan and constraints, and holds the mapping and the actions
+/// Reads the scenario, compiles model, plan and constraints, and checks the mapping and the actions
 /// against the model.
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
                                                 Context& context);
 
-/// The same for comparing it with another: also lists what it says beside model and plan, and what
-/// the files hold that an external simulator's command names.
+/// The same for a comparison: also lists the settings beside model and plan, and the contents of
+/// the files that an external simulator's command names.
 base::Result<ScenarioModel> load_compared_scenario(const std::filesystem::path& path,
                                                    harness::ScenarioSettings& settings,
                                                    Context& context);
@@ -75,8 +75,8 @@ base::Result<compiler::Compilation> compile_with_model(const harness::Scenario& 
                                                        harness::Execution execution,
                                                        bool constraints, Context& context);
 
-/// What the models on the command line compile to; a single .yaml is a scenario, a single .cnf has
-/// been compiled before and brings neither the checked model nor the plan's graph.
+/// Compiles the models on the command line; a single .yaml is a scenario, a single .cnf has been
+/// compiled before and brings neither the checked model nor the plan's graph.
 base::Result<compiler::Compilation> compile_models(const ModelOptions& options, Context& context);
 
 /// As load_scenario_run and compile_models, with a model that was grounded without settling

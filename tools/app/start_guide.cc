@@ -11,7 +11,7 @@
 namespace parallax::tools {
 namespace {
 
-// Starts whose whole execution is asked for.
+// Number of starts whose whole execution is asked for.
 constexpr std::size_t kMaxWhole = 200;
 
 }  // namespace
@@ -72,7 +72,7 @@ std::optional<harness::GuidedStart> ScenarioStartGuide::next(std::int64_t sample
   for (std::size_t i = 0; i < starts_.candidates.size(); ++i) {
     if (tries_[i] >= max_tries_) continue;
     const auto& items = starts_.candidates[i].items;
-    // What was tried in vain promises less.
+    // Earlier tries in vain lower the score.
     const auto promised =
         static_cast<double>(std::count_if(items.begin(), items.end(),
                                           [&](const auto& key) { return open.contains(key); })) /

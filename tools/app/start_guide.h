@@ -13,7 +13,7 @@
 
 namespace parallax::tools {
 
-/// Starts of executions, and what the model lets them go through.
+/// A start of executions, with the items that the model lets them go through.
 struct StartCandidates {
   struct Candidate {
     std::int64_t start = 0;  // number of the initial state, from 1
@@ -29,11 +29,11 @@ StartCandidates start_candidates(const ScenarioModel& loaded, ClosedLoop& loop,
                                  const std::vector<std::vector<compiler::FluentId>>& states,
                                  const std::vector<compiler::FluentId>& fluents);
 
-/// Chooses the start from which the model goes through most that no execution went through yet:
-/// performs, branches, handlers and retries of the plan.
+/// Chooses the start from which the model goes through most items that no execution has gone
+/// through yet: performs, branches, handlers and retries of the plan.
 class ScenarioStartGuide final : public harness::StartGuide {
  public:
-  /// How often one candidate is tried.
+  /// Number of times that one candidate is tried.
   static constexpr int kMaxTries = 8;
 
   /// All but the candidates outlive the object.

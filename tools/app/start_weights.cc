@@ -15,7 +15,7 @@ namespace parallax::tools {
 
 namespace {
 
-/// The formulas as the guards of a plan that has nothing else: asked of one state.
+/// The formulas as guards of a plan that has nothing else, to be evaluated in one state.
 struct WeightQuestions {
   compiler::PlanGraph graph;
   std::vector<compiler::BranchId> guards;  // by formula

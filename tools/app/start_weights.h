@@ -16,10 +16,11 @@ namespace parallax::tools {
 base::Status check_start_weights(const harness::Scenario& scenario,
                                  const compiler::TypedModel& model, Context& context);
 
-/// What the scenario's `start_weights` say of states of its model, each given as the true ones of
-/// `fluents`, sorted: of the first formula that holds in the state its weight, and 1 where none
-/// does. `predicate` tells what the model says of a user's predicate. Reports kQuestionNotObserved
-/// for a formula that is not about `fluents` at one timepoint, and kYamlOutOfBounds if all are 0.
+/// Weights of states of the scenario's model by its `start_weights`. Each state is given as its
+/// true fluents among `fluents`, sorted; its weight is that of the first formula that holds in it,
+/// or 1 if none does. `predicate` tells what the model says of a user's predicate. Reports
+/// kQuestionNotObserved for a formula that is not about `fluents` at one timepoint, and
+/// kYamlOutOfBounds if all are 0.
 base::Result<std::vector<double>> start_weights(
     const ScenarioModel& loaded, const std::vector<std::vector<compiler::FluentId>>& states,
     const std::vector<compiler::FluentId>& fluents,

@@ -10,9 +10,9 @@
 
 namespace parallax::tools {
 
-/// `--check`: holds traces against the reference evaluator, which shares nothing with the way they
-/// were found. Standard meaning only. A plan's control flow and the state constraints of a scenario
-/// are not part of the model and are not looked at.
+/// `--check`: checks traces with the reference evaluator, which shares no code with the search for
+/// them. Standard meaning only. A plan's control flow and the state constraints of a scenario are
+/// not part of the model and are not checked.
 class TraceCheck {
  public:
   /// All three outlive the check; raising `stop`, which may be null, ends it early.

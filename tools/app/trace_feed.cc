@@ -33,7 +33,7 @@ std::string proof_remark(const Context& context, const compiler::CompiledModel& 
   return "no proof of the contradiction was accepted: " + ground.proof.reason;
 }
 
-/// Notes that say where a part of the contradiction stands; a screen has no room for more.
+/// Number of notes with places in the contradiction; a screen has no room for more.
 constexpr std::size_t kMostBlamed = 6;
 
 /// The parts of a contradiction: statements of the author first, then consequences of declarations;
@@ -130,7 +130,7 @@ base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
   given_ = trace->number;
   auto converted = campaign_trace(*model_, *std::move(trace), *context_);
   if (!converted) return context_->sink().already_reported();
-  // Traces of the same events are told apart by where they start.
+  // Traces with the same events are distinguished by their initial states.
   if (split_initial_)
     converted->key += fmt::format(" from {}", fmt::join(converted->holds(0), ";"));
   return std::optional<harness::CampaignTrace>(*std::move(converted));
@@ -151,7 +151,7 @@ base::Known EnumeratedTraces::admits(
   return enumerator_->admits(trace, observed);
 }
 
-/// Of a search that came to its end: that nothing meets the constraints is proved.
+/// Called when the search is exhausted: it is proved that no trace meets the constraints.
 base::Status EnumeratedTraces::explain_absence() const {
   auto& sink = context_->sink();
   if (report_if_unsatisfiable(*model_, model_->horizon, *context_) == base::Known::kNo) {

@@ -26,7 +26,7 @@ class EnumeratedTraces final : public harness::TraceFeed {
   runtime::Symbols symbols() const override { return enumerator_->symbols(); }
   base::Known admits(const harness::CampaignTrace& trace,
                      const std::vector<std::map<compiler::FluentId, bool>>& observed) override;
-  /// What is said beside the message that no execution meets the constraints.
+  /// Sets the source of notes for the message that no execution meets the constraints.
   void explain_absence_by(std::function<std::vector<std::string>()> reasons) {
     reasons_ = std::move(reasons);
   }

@@ -29,10 +29,10 @@ std::unique_ptr<runtime::ListFormat> make_listing(const ModelOptions& model,
                                                   const compiler::Compilation& compilation,
                                                   Context& context);
 
-/// What standard output gets if a limit ends the process in the middle of the list.
+/// Text for standard output if a limit ends the process in the middle of the list.
 std::string stopped_text(const std::string& format);
 
-/// What the model's `option` lines and completions say of the old printed form.
+/// Options of the old printed form, from the model's `option` lines and completions.
 inline runtime::DecreasonerOptions decreasoner_options(const compiler::TypedModel& typed) {
   runtime::DecreasonerOptions options;
   options.time_diff = typed.options.time_diff;

@@ -18,8 +18,8 @@ namespace {
 
 using runtime::Strategy;
 
-/// Of a certified list so many traces are searched by the logged solver before another strategy
-/// takes over: blocking grows dearer with each.
+/// Most traces that the logged solver finds for a certified list before another strategy takes
+/// over: blocking grows dearer with each.
 constexpr std::int64_t kLogged = 64;
 
 runtime::TraceQuery query_of(const SearchOptions& options, const Context& context) {
@@ -35,8 +35,8 @@ runtime::TraceQuery query_of(const SearchOptions& options, const Context& contex
   return query;
 }
 
-/// Who asks for one trace that reaches something asks whether there is one. The traces of a plan
-/// are known by their numbers.
+/// A query for one trace that reaches something only asks whether there is one. The traces of a
+/// plan are known by their numbers.
 runtime::TraceOrder order_of(const SearchOptions& options, const TraceCertifier& certifier,
                              bool is_reached) {
   const bool witness = is_reached && options.limit == 1 && !certifier.is_asked();
@@ -62,7 +62,7 @@ bool leaves_proof(const runtime::TraceQuery& query, const TraceCertifier& certif
   return certifier.is_asked() && blocks;
 }
 
-/// The search by blocking that leaves a proof; none if there are more traces than are worth it.
+/// The search by blocking that leaves a proof; none if there are more traces than it is worth.
 std::optional<Ending> list_logged(const runtime::TraceQuery& query,
                                   const compiler::CompiledModel& model, TraceCertifier& certifier,
                                   TraceWriter& writer, runtime::SourceStats& stats,
@@ -75,7 +75,7 @@ std::optional<Ending> list_logged(const runtime::TraceQuery& query,
     if (!trace) break;
     writer.write(*trace);
   }
-  // At the limit one more call tells "these are all" from "there are more".
+  // At the limit one more call distinguishes "these are all" from "there are more".
   if (!enumerator.exhausted() && !context.stopped()) enumerator.look_on();
   stats = enumerator.stats();
   if (enumerator.exhausted()) {
@@ -101,7 +101,7 @@ std::optional<Ending> draw(const SearchOptions& options, const compiler::Compile
                                            sample.population.get_str(), options.seed)};
 }
 
-/// What the listing rests on, for --stats.
+/// Prints the interchangeable constants that the listing rests on, for --stats.
 void show_constants(const SearchOptions& options, const runtime::Interchangeables& constants,
                     Context& context) {
   if (!options.stats || context.form().json) return;
@@ -159,7 +159,7 @@ Ending list_plan_traces(const SearchOptions& options, const compiler::CompiledMo
   const bool any = order == runtime::TraceOrder::kAny && !certifier.is_asked();
   std::optional<runtime::ModelSymmetry> symmetry;
   std::optional<runtime::TraceOrbits> orbits;
-  // A plan names what it is about; of what is reached without one, many things may be alike.
+  // A plan names the things that it is about; without one, many things may be interchangeable.
   const bool asks_first = model.plan.empty() && !certifier.is_asked();
   if (any || asks_first || options.up_to_symmetry) {
     symmetry.emplace(model, options.up_to_symmetry ? runtime::SymmetryEffort::kThorough
@@ -239,8 +239,8 @@ std::optional<Ending> list_model_traces(const SearchOptions& options,
   const auto before = options.from - 1 + writer.count();
   if (before > 0) traces.seek(static_cast<long>(before));
   writer.write_all(traces);
-  // At the limit one more call tells "these are all" from "there are more". Who wants any witness
-  // does not want to wait for that.
+  // At the limit one more call distinguishes "these are all" from "there are more". A query for any
+  // witness does not wait for that.
   const bool asks_on = query.order == runtime::TraceOrder::kCanonical;
   if (asks_on && writer.full() && !context.stopped()) traces.look_on();
   show_stats(options, traces.stats(), context);
@@ -284,7 +284,7 @@ std::optional<CountedTraces> count_model_traces(const SearchOptions& options,
       return count_model_orbits(options, model, symmetry, query, certifier, context);
   }
   if (leaves_proof(query, certifier)) {
-    // Only of a model without traces the number is proved.
+    // The number of traces is proved only for a model without any.
     runtime::SolverSession session(model, certifier.solver(), certifier.loading());
     if (session.solve(model.horizon, {}) == runtime::SolveStatus::kUnsatisfiable) {
       return CountedTraces{

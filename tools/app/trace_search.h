@@ -12,15 +12,15 @@
 
 namespace parallax::tools {
 
-/// Which traces are asked for, and how they are to be found.
+/// A query for traces, and how they are to be found.
 struct SearchOptions {
   std::int64_t limit = 10;  // 0: all
   std::string distinct = "observable";
   std::string strategy = "auto";
   std::int64_t from = 1;
-  std::int64_t sample = 0;  // so many are drawn; 0: they are listed
+  std::int64_t sample = 0;  // number of traces to draw; 0: traces are listed
   std::int64_t seed = 1;
-  std::string hits = "first";  // the last two: of plans and state constraints
+  std::string hits = "first";  // the last two are for plans and state constraints
   bool split_initial = false;
   std::string order;            // "canonical", "any"; empty: what suits
   bool up_to_symmetry = false;  // one of each orbit
@@ -28,7 +28,7 @@ struct SearchOptions {
   bool stats = false;           // say how they were found
 };
 
-/// What is known of the traces that were not listed, and how.
+/// How a search ended: what is known of the traces that were not listed.
 struct Ending {
   std::string exploration = "stopped";
   bool complete = false;

@@ -10,7 +10,7 @@
 namespace parallax::tools {
 namespace {
 
-/// Text is handed on in blocks of this size, so that listing millions is not a call for each.
+/// Block size of the output, so that listing millions of traces is not one call for each.
 constexpr std::size_t kBlock = std::size_t{1} << 16U;
 
 }  // namespace
@@ -38,7 +38,8 @@ void TraceWriter::write(const runtime::Trace& trace) {
 }
 
 void TraceWriter::write_all(runtime::TraceSource& source) {
-  // Traces as such are needed for checks, for a proof, for the document and for other formats only.
+  // Traces as objects are needed only for checks, for a proof, for the document and for other
+  // formats.
   const bool as_text = check_ == nullptr && !certifier_.is_asked() && !form_.count_only &&
                        form_.listing == nullptr && !context_.form().json;
   std::string block;

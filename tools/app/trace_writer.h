@@ -13,7 +13,7 @@
 namespace parallax::tools {
 
 /// Prints traces as they are found and counts them; under --json they are kept for the document.
-/// What is checked is printed all the same.
+/// Traces that fail the check are printed, too.
 class TraceWriter {
  public:
   struct Form {
@@ -54,8 +54,8 @@ class TraceWriter {
   std::string list_;
 };
 
-/// What the exploration did not follow, one sentence each: "bound reached: `loop` at
-/// plan.lisp:3:5", "the plan goes on beyond timepoint 20 with Go(r1) at plan.lisp:9:3".
+/// The open ends of the exploration, one sentence each: "bound reached: `loop` at plan.lisp:3:5",
+/// "the plan goes on beyond timepoint 20 with Go(r1) at plan.lisp:9:3".
 std::vector<std::string> open_end_texts(const compiler::CompiledModel& model,
                                         const runtime::OpenEnds& ends);
 

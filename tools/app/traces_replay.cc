@@ -24,15 +24,15 @@
 namespace parallax::tools {
 namespace {
 
-/// Why a trace is none of the model: the first reason, and some of the others.
+/// Why a trace is not one of the model: the first reason, and some of the others.
 struct Blame {
   std::int64_t timepoint = 0;
   base::DiagnosticNote first;
   std::vector<base::DiagnosticNote> others;
 };
 
-/// What the evaluator finds wrong with a trace that mentions every atom: the earliest violation,
-/// among equals the first of the text. None if it finds nothing.
+/// The earliest violation that the evaluator finds in a trace that mentions every atom, among
+/// equals the first of the text. None if it finds nothing.
 std::optional<Blame> evaluated_blame(const runtime::ClaimedTrace& trace,
                                      const compiler::ReferenceEvaluator& evaluator);
 
@@ -200,8 +200,8 @@ class TraceFileReplay {
     return evaluator_->refusal() ? nullptr : evaluator_.get();
   }
 
-  /// The evaluator names the atoms that decide; where it sees nothing wrong, because the trace
-  /// leaves atoms open or a plan is to blame, a minimal core does.
+  /// The evaluator names the atoms that decide. Where it finds no fault, because the trace leaves
+  /// atoms open or a plan is to blame, a minimal core is used instead.
   std::optional<Blame> find_blame(const ClaimedTrace& trace, const ReplayVerdict& verdict) {
     if (verdict.hidden == 0) {
       if (const auto* evaluator = usable_evaluator()) {

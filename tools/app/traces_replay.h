@@ -16,12 +16,12 @@ struct ReplayTracesOptions {
   bool other_model = false;  // --other-model
 };
 
-/// What became of one trace of a file.
+/// Result of replaying one trace of a file.
 struct ReplayedTrace {
   std::int64_t number = 0;
   bool agrees = false;
-  std::int64_t hidden = 0;  // agrees, with values for so many atoms that it does not mention
-  // One that fails: where it does first, why, and the place of the axiom.
+  std::int64_t hidden = 0;  // if it agrees: number of atoms with values that it does not mention
+  // For one that fails: the first place where it does, why, and the place of the axiom.
   std::int64_t timepoint = 0;
   std::string reason;
   std::optional<base::SourceRange> source;
@@ -36,10 +36,10 @@ struct TracesReplay {
   bool closed = false;       // the file says how its list ended
 };
 
-/// `traces --replay`: holds the traces of a file against the model. `report` hears of each as soon
-/// as it is known. Reports those that fail (E7204, E7205) at the first axiom and timepoint. Every
-/// trace that agrees is checked again by the reference evaluator, where the model can be expanded.
-/// Files that cannot be read are reported (E61xx).
+/// `traces --replay`: checks the traces of a file against the model. `report` is called for each as
+/// soon as its result is known. Reports those that fail (E7204, E7205) at the first axiom and
+/// timepoint. Every trace that agrees is checked again by the reference evaluator, where the model
+/// can be expanded. Files that cannot be read are reported (E61xx).
 base::Result<TracesReplay> replay_traces(const ModelOptions& model,
                                          const ReplayTracesOptions& options,
                                          const std::function<void(const ReplayedTrace&)>& report,

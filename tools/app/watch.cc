@@ -20,8 +20,8 @@ using compiler::EventId;
 using runtime::Admission;
 using runtime::StepWindows;
 
-/// A model is compiled for at most so many timepoints more than its scenario asks for, so that what
-/// repeats itself is seen to.
+/// Limit on the timepoints that a model is compiled for beyond those of its scenario, so that
+/// repetition is detected.
 constexpr std::int64_t kMostTimepoints = 120;
 
 std::string symbol_of(std::string_view printed) {
@@ -67,8 +67,8 @@ std::set<std::string> performable(const harness::Scenario& scenario) {
   return out;
 }
 
-/// Who can know of an event: the plan performs it, or the log may be silent about it. The rest
-/// happens only where axioms demand it.
+/// Events that somebody knows of: the plan performs them, or the log may be silent about them. The
+/// rest happens only where axioms demand it.
 void note_unseen(const harness::Scenario& scenario, const CompiledModel& model,
                  runtime::BeliefOptions& options) {
   if (scenario.plan.empty()) return;
@@ -85,7 +85,7 @@ void note_unseen(const harness::Scenario& scenario, const CompiledModel& model,
   }
 }
 
-/// The horizon at which it can be seen that a plan is over, or comes round again.
+/// A horizon at which it shows that a plan is over, or comes round again.
 std::int64_t wanted_horizon(const ScenarioModel& loaded) {
   const auto& plan = loaded.compilation.plan;
   const std::int64_t horizon = loaded.scenario.horizon;

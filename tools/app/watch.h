@@ -33,7 +33,7 @@ struct RefusedFluent {
   std::vector<std::pair<std::string, harness::Value>> variables;  // that it was read from
 };
 
-/// What no state that was still possible admits.
+/// The part of a report that no still possible state admits.
 struct Refusal {
   std::vector<RefusedFluent> fluents;  // of an observation
   std::string event;                   // of a step: `Go(r2)`, several joined by `+`
@@ -62,9 +62,9 @@ class Watch {
   runtime::Admission observe(const harness::ReportedValues& values, bool at_rest);
   runtime::Admission step(const runtime::ToldStep& told);
   const runtime::Belief& belief() const { return *belief_; }
-  /// Of what was refused last.
+  /// The last refusal.
   const Refusal& refusal() const { return refusal_; }
-  /// So many observations that said something of a fluent were held against the model.
+  /// Number of observations that mentioned a fluent and were compared with the model.
   std::int64_t compared() const { return compared_; }
 
  private:

@@ -16,10 +16,10 @@
 namespace parallax::tools {
 namespace {
 
-// A world needs a step that is like the one before, so that it is known how it goes on.
+// A world needs a step that follows another one, so that it is known how it goes on.
 constexpr std::int64_t kLeastSteps = 2;
 
-/// A world of which nothing can come: the axioms that exclude each other are named.
+/// Reports a world without an execution, with the axioms that exclude each other.
 base::Status check_execution(const compiler::CompiledModel& model, compiler::Timepoint steps,
                              base::SourceRange place, Context& context) {
   const auto core =

@@ -10,8 +10,7 @@
 
 namespace parallax::tools {
 
-/// A run of the benchmark: where its files are, how it measures, what it has found. Rows are
-/// printed as they come in.
+/// A run of the benchmark: its files, settings and results. Rows are printed as they are measured.
 class Bench {
  public:
   /// Makes a folder below the one for temporary files; it is removed at the end.
@@ -20,9 +19,10 @@ class Bench {
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
 
-  /// Ends what is measured under `section` and begins another one.
+  /// Finishes the current section and begins `section`.
   void begin(std::string section);
-  /// Prints how much dearer the peers were in the section, in the mean and where they did best.
+  /// Prints the cost of the peers in the section relative to ours, in the mean and where they did
+  /// best.
   void sum_up();
   /// Measures the contestants and adds the row.
   const Row& compare(std::string name, const std::vector<Contestant>& contestants,
@@ -35,13 +35,13 @@ class Bench {
 
   /// A file in the run's folder.
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  /// `NAME.e` with the text of the family's model; the caller owes a name that there is.
+  /// `NAME.e` with the text of the family's model; the name must exist.
   std::string model_file(const std::string& name);
   /// `NAME.lp` or `NAME.tuned.lp`, for clingo.
   std::string program_file(const std::string& name, Encoding encoding);
   /// `NAME.shown.lp`: the exported program without a line.
   std::string program_without(const std::string& name, const std::string& line);
-  /// `NAME.dec.cnf`: what `parallax compile` makes of it.
+  /// `NAME.dec.cnf`: the model compiled by `parallax compile`.
   std::string artifact_file(const std::string& name);
 
  private:

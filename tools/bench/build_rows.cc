@@ -1,4 +1,4 @@
-// What it costs to build the program: from nothing, with the tests, and after a change.
+// Measures the cost of building the program: from nothing, with the tests, and after a change.
 
 #include <fmt/core.h>
 

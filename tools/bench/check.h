@@ -6,11 +6,11 @@ namespace parallax::tools {
 
 struct CheckOptions {
   std::string bounds;        // the file of bounds
-  double build_cpu_s = 0.0;  // processor time of a build from nothing; 0: not looked at
+  double build_cpu_s = 0.0;  // processor time of a build from nothing; 0: not checked
   bool record = false;       // write what was measured into `bounds`
 };
 
-/// Asks cheap questions and holds their cost against the recorded bounds, in under two minutes.
+/// Measures cheap questions and compares their cost with the recorded bounds, in under two minutes.
 /// Returns an exit code: 1 where one is slow, answers wrongly or is not recorded, 3 if the file of
 /// bounds cannot be read.
 int check_bounds(const CheckOptions& options);

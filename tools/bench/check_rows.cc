@@ -1,4 +1,4 @@
-// Cheap questions whose cost is held against a recorded one, in units of the reference work.
+// Cheap questions whose cost is compared with a recorded one, in units of the reference work.
 
 #include <fmt/core.h>
 
@@ -26,7 +26,7 @@ constexpr double kTimeLimit_s = 30.0;
 struct Question {
   std::string name;
   Contestant contestant;
-  std::string expected = {};  // empty: the exit code is all that is looked at
+  std::string expected = {};  // empty: only the exit code is checked
 };
 
 /// A predicate that nothing determines where its event does not happen: few traces, many hidden
@@ -49,7 +49,7 @@ Question counting(Bench& bench, const std::string& family, const std::string& tr
   return {"count " + family, parallax_counts(bench.model_file(family)), traces};
 }
 
-/// A run refuses a folder that has one, so each begins without.
+/// A run refuses a folder that holds one already, so each begins without.
 Question scenario_run(Bench& bench, const std::string& name, const std::string& scenario,
                       int runs) {
   const auto folder = bench.path("run");

@@ -20,7 +20,7 @@
 namespace parallax::tools {
 namespace {
 
-/// A program on a busy machine gets a part of a processor; one that waits for ever gets none.
+/// A program on a busy machine gets a part of a processor; one that waits forever gets none.
 constexpr double kWallPerCpu = 10.0;
 constexpr int kNoSuchProgram = 127;  // as in shells
 

@@ -6,7 +6,7 @@
 
 namespace parallax::tools {
 
-/// What one run of a program cost.
+/// Cost of one run of a program.
 struct Cost {
   double wall_s = 0.0;
   double cpu_s = 0.0;      // user and system
@@ -36,7 +36,7 @@ struct ChildOptions {
 std::optional<ChildRun> run_child(const std::vector<std::string>& command,
                                   const ChildOptions& options);
 
-// What programs found, read from the end of their output; empty if it is not there.
+// Answers of other programs, read from the end of their output; empty if there is none.
 
 /// The number in `Models       : 3488` of clingo's statistics.
 std::string clingo_answer(const std::string& tail);

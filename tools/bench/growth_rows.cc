@@ -1,4 +1,5 @@
-// What every stage costs from a model to its traces, over the number of things, rooms and steps.
+// Measures the cost of every stage from a model to its traces, over the number of things, rooms and
+// steps.
 
 #include <fmt/core.h>
 

@@ -1,5 +1,5 @@
-// The kitchen's repaired plan in closed loop, beside the same actions from the same starts as open
-// loop makes them: what walking through the plan and asking the model costs.
+// The kitchen's repaired plan in closed loop, compared with open loop over the same actions from
+// the same starts: the cost of walking through the plan and asking the model.
 
 #include <fmt/core.h>
 

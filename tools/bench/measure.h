@@ -27,19 +27,19 @@ struct Row {
   std::optional<std::string> expected;  // the answer that is known
   std::string note;                     // other figures of the row, in words
 
-  /// Processor time of a side in units of the first's; none for the first, or unless both have one.
-  /// All programs use one thread, and wall time would also measure what else the machine does.
+  /// Processor time of a side relative to the first; none for the first, or unless both have one.
+  /// All programs use one thread, and wall time would also measure other work on the machine.
   std::optional<double> ratio(std::size_t side) const;
-  /// No two answers, and no answer and the known one, differ.
+  /// All answers agree with each other and with the known one.
   bool agrees() const;
 };
 
 /// A line for each side, under the row's name.
 std::string to_text(const Row& row);
 
-/// Of the rows of a section that have peers: for every peer the geometric mean of its cost in units
-/// of ours, and the row where that is least; the same for the best of clingo's configurations,
-/// where several took part. Rows in which one of the two did not end are counted apart.
+/// Summarizes the rows of a section that have peers: for every peer, the geometric mean of its cost
+/// relative to ours, and the row where that ratio is least; the same for the best of clingo's
+/// configurations, where several took part. Rows in which the peer did not end are counted apart.
 std::string summary_text(const std::vector<Row>& rows);
 
 /// All rows with times, memory, answers and commands as one JSON document.
@@ -61,8 +61,8 @@ struct Contestant {
   std::function<std::string(const ChildRun&)> answer;
 };
 
-/// Runs the contestants in turn, round by round, so that both see the machine alike, and gives the
-/// medians. Standard output goes to `output`, a file that is written anew each time.
+/// Runs the contestants in turn, round by round, so that load on the machine affects both alike,
+/// and gives the medians. Standard output goes to `output`, a file that is written anew each time.
 std::vector<Side> measure(const std::vector<Contestant>& contestants, const std::string& output,
                           const MeasureOptions& options);
 

@@ -1,5 +1,5 @@
-// A log of the kitchen held against its model: one simulated run, each state seen many times with
-// noise in every coordinate.
+// A log of the kitchen checked against its model: one simulated run, each state observed many times
+// with noise in every coordinate.
 
 #include <fcntl.h>
 #include <fmt/core.h>

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kHorizons[] = {10, 20, 30, 40, 50};
 
-/// Where the kitchen's plans point: bases for `region`, cells of counter and table elsewhere.
+/// Places in the kitchen's plans: bases for `region`, cells of counter and table elsewhere.
 class KitchenPlaces final : public compiler::PoseLocator {
  public:
   std::optional<std::string> region_of(std::string_view function,

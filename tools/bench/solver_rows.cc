@@ -16,7 +16,7 @@
 namespace parallax::tools {
 namespace {
 
-/// Of clingo's own sets of options, those that do best on planning problems.
+/// The sets of options of clingo's own that do best on planning problems.
 constexpr std::array kConfigurations = {"auto", "handy", "trendy"};
 
 /// The first `limit` traces (0: all), found in one of the ways that `--strategy` names.

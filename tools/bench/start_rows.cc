@@ -75,7 +75,7 @@ struct Played {
   bool covered = true;
 };
 
-/// What LoopStream does with the feed, without judging.
+/// Uses the feed as LoopStream does, without judging.
 Played play(const ScenarioModel& loaded, bool guided, Context& context) {
   Played out;
   auto loop = *ClosedLoop::make(loaded, context);

@@ -1,4 +1,4 @@
-// What a section comes to: geometric means over its rows.
+// Summary of a section: geometric means over its rows.
 
 #include <fmt/core.h>
 

@@ -109,7 +109,7 @@ base::Status take_trace(const ScenarioModel& loaded, harness::ConformanceOptions
 int tell(const harness::ConformanceOptions& options, Invocation& invocation) {
   const auto command = options.process.command;
   auto started = options;
-  // What it starts, and leaves behind, ends with the check.
+  // Everything that the adapter starts and leaves behind ends with the check.
   started.process.command.insert(started.process.command.begin(),
                                  {"/proc/self/exe", "supervise", "--"});
   const auto report = harness::check_conformance(started);

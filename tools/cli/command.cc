@@ -62,7 +62,7 @@ std::string error_document(const std::vector<base::Diagnostic>& diagnostics,
 
 void Invocation::document(std::string json) { document_ = std::move(json); }
 
-/// A reader that has seen enough (head) closes the pipe: that is no error of ours to speak of.
+/// A reader that has seen enough (head) closes the pipe, which is not an error of ours.
 void Invocation::report_output_error() {
   if (!is_lost_ || output_error() == EPIPE) return;
   sink().error_about(codes::kFileNotWritable, "standard output", std::strerror(output_error()));
@@ -95,7 +95,8 @@ void Invocation::print_diagnostics(const std::vector<base::Diagnostic>& diagnost
   if (!options_.quiet) rest(sink().warning_count(), "warnings are");
 }
 
-/// Writes which files were read, where others were looked for in vain, and the memory it took.
+/// Writes the names of the files that were read or looked for in vain, and the memory that was
+/// used.
 void Invocation::write_footprint() {
   if (options_.footprint.empty()) return;
   std::set<std::string> inputs, absent;
@@ -116,7 +117,7 @@ void Invocation::write_footprint() {
 }
 
 int Invocation::finish(int code) {
-  // What was reported after that is about having been stopped by it.
+  // Drops the reports after the output was lost: they are about having been stopped by that.
   if (is_lost_) sink() = before_output_error_;
   report_output_error();
   write_footprint();
@@ -132,7 +133,7 @@ int Invocation::finish(int code) {
     result(error_document(diagnostics, files()));
   }
   if (!sink().has_errors()) return code;
-  // A command that knows better (a finding, an interruption) keeps its code.
+  // A command with a code of its own (a finding, an interruption) keeps it.
   return code != 0 ? code : sink().exit_code();
 }
 

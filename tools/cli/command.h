@@ -14,7 +14,7 @@
 
 namespace parallax::tools {
 
-/// What every command understands.
+/// Options that every command understands.
 struct CommonOptions {
   bool json = false;
   bool quiet = false;
@@ -43,14 +43,14 @@ class Invocation final : public Context {
   void result(const std::string& text) override;
   /// A result that another program reads byte by byte, such as a model.
   void exact_result(const std::string& text);
-  /// The result under --json: one object. What was reported becomes its field `diagnostics` when it
-  /// is printed, by finish.
+  /// The result under --json: one object. `finish` adds the diagnostics as its field `diagnostics`
+  /// and prints it.
   void document(std::string json) override;
   /// The question was answered to its end, even if a limit was reached meanwhile.
   void answered() { answered_ = true; }
   bool is_answered() const { return answered_; }
-  /// Prints what was reported. With --json, standard output gets one document: the command's, or
-  /// the error document if it made none. Returns the exit code for the errors, `code` without any.
+  /// Prints the diagnostics. With --json, standard output gets one document: the command's, or the
+  /// error document if it made none. Returns the exit code for the errors, `code` without any.
   int finish(int code);
 
  private:

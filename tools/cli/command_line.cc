@@ -18,7 +18,7 @@ namespace {
 CLI::Validator finite_range(double lower, double upper) {
   const auto check = [lower, upper](std::string& text) -> std::string {
     double value = 0.0;
-    // Not a number compares false with everything, so ask for what is wanted.
+    // NaN compares false with everything, so test for the allowed range.
     const bool fine = CLI::detail::lexical_cast(text, value) && value >= lower && value <= upper;
     return fine ? std::string() : fmt::format("{} is no number from {} to {}", text, lower, upper);
   };
@@ -35,7 +35,7 @@ CLI::Validator whole_number(std::int64_t lower, std::int64_t upper) {
   return CLI::Validator(check, "N");
 }
 
-/// With words of its own: the library prints the greatest double digit by digit.
+/// With its own message: the library prints the greatest double digit by digit.
 CLI::Validator number_from_0(bool and_0) {
   const auto check = [and_0](std::string& text) -> std::string {
     double value = 0.0;
@@ -115,7 +115,7 @@ CLI::Option* add_option(CLI::App& app, const Option& from) {
   return added;
 }
 
-/// The declarations of a table, and who asks which of them was given.
+/// The declarations of a table, and which of them were given.
 class Declared {
  public:
   void add(CLI::App& app, const OptionTable& table) {

@@ -28,7 +28,7 @@ struct ParsedLine {
 /// Parses the line into the targets of the tables.
 ParsedLine parse_command_line(const Program& program, int argc, char** argv);
 
-/// For programs without further ceremony: parses, and prints what there is to print.
+/// For simple programs: parses, and prints the help or error.
 ParsedLine parse_and_print(const Program& program, int argc, char** argv);
 
 }  // namespace parallax::tools

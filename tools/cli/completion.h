@@ -7,9 +7,9 @@
 
 namespace parallax::tools {
 
-/// What shells complete: scripts that are made of the tables that parse the line. They know every
-/// command that is not hidden, its options, the values of those that have a closed set, and where
-/// files and folders are taken.
+/// Completion scripts for shells, made from the tables that parse the line. They know every command
+/// that is not hidden, its options, the values of those that have a closed set, and where files and
+/// folders are taken.
 std::string bash_completion(const Program& program);
 std::string zsh_completion(const Program& program);
 std::string fish_completion(const Program& program);

@@ -8,7 +8,7 @@
 namespace parallax::tools {
 namespace {
 
-/// What is the same for every program: which word is being typed, and what answers it.
+/// The part that is the same for every program: finds the word that is being typed and answers it.
 constexpr const char* kBashFrame = R"(
 # Sets COMPREPLY to the words, files, folders or programs that begin with $cur.
 _parallax_reply() {
@@ -143,7 +143,7 @@ std::string bash_values(const Program& program) {
       auto act = bash_kind(*option);
       if (form == ValueForm::kWords) act += " many=yes";
       if (form == ValueForm::kAttached) act += " attached=yes";
-      // What every command has is said once.
+      // Options that every command has appear once.
       const bool is_general = option->heading == kGeneralHeading;
       for (const auto& name : names_of(*option)) {
         const auto pattern =

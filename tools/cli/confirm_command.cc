@@ -11,7 +11,7 @@
 namespace parallax::tools {
 namespace {
 
-/// What both commands are asked.
+/// Options of both commands.
 struct BorderOptions {
   RunFolderOptions run;
   std::string sample;
@@ -25,7 +25,7 @@ struct BorderOptions {
   }
 };
 
-/// A discrepancy of a run folder with what simulates it again.
+/// A discrepancy of a run folder with the simulators that repeat it.
 struct DiscrepancyAtHand {
   RecordedDiscrepancy found;
   ScenarioModel as_run;
@@ -51,7 +51,7 @@ base::Result<std::optional<DiscrepancyAtHand>> load(const BorderOptions& options
     words = "The model admits what the simulation showed: there is nothing to repeat.";
     return none;
   }
-  // By the name that was found, which has been told.
+  // Uses the name under which the scenario was found, which a remark has told.
   const RunFolderOptions folder{options.run.folder, (*found)->loaded.scenario.file};
   auto as_run =
       load_recorded_scenario(folder, *(*found)->journal.header, ScenarioUse::kRun, invocation);
@@ -133,7 +133,7 @@ int threshold(const ThresholdCommandOptions& options, Invocation& invocation) {
   return 0;
 }
 
-/// Those that both commands have.
+/// Options that both commands have.
 void add_border_options(OptionTable& command, BorderOptions& options) {
   command.option("run_dir", options.run.folder, "Folder of a run").required().folder();
   command.option("--sample", options.sample, "TRACE.SAMPLE; default: the first discrepancy");

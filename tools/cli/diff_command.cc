@@ -35,7 +35,7 @@ struct DiffOptions {
 
 std::string quoted(const std::string& text) { return base::json_text(Json(base::printable(text))); }
 
-/// What every kind of comparison ends with: a text, or the fields of a document.
+/// The result of every kind of comparison: a text, or the fields of a document.
 struct Comparison {
   bool differs = false;
   std::string text;
@@ -66,7 +66,7 @@ std::string facts_fields(const FactReport& report, const char* declarations, con
                      axioms, to_json(report, FactKind::kAxiom));
 }
 
-/// Reports a question that no call answered; the answers that there are count all the same.
+/// Reports a question that no call could answer; the other answers still count.
 void report_unknown(const ModelDifference& found, Invocation& invocation) {
   const auto report = [&](const ModelRevision& kept, const ModelRevision& other) {
     invocation.sink().error_about(
@@ -107,7 +107,7 @@ int diff_models(const DiffOptions& options, RevisionKind old_kind, RevisionKind 
     for (const auto& remark : found->remarks) out.text += remark + '\n';
     out.text += traces_text(*found, options.stat);
   }
-  // Nothing was found, but not everything was decided: that is no "equal".
+  // No difference was found, but not everything was decided: that is not "equal".
   if (!out.differs && invocation.sink().has_errors()) {
     if (!invocation.options().json) invocation.result(out.text);
     return 0;
@@ -169,7 +169,7 @@ Json edits_json(const std::vector<FormEdits>& forms) {
   return out;
 }
 
-/// Of long forms that changed the part is shown that did.
+/// Shortens changed long forms to the parts that changed.
 void show_changes(const FactReport& report, PlanRevision& before, PlanRevision& after) {
   if (!before.lisp) return;  // entries of binding tables are shown whole
   for (const auto& [i, j] : report.difference.changed) {

@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 bool is_gate_report(std::string_view head) { return head.starts_with(kGateMark); }
 
-/// Draws the discrepancy into a folder beside the Markdown, and says which picture shows where it
-/// parts, relative to it. Empty where none can be drawn, which is told.
+/// Draws the discrepancy into a folder beside the Markdown, and returns the picture of the parting,
+/// relative to the Markdown. Empty where none can be drawn, which is reported.
 std::string draw_witness(const DrawnWitness& witness, const fs::path& markdown,
                          Invocation& invocation) {
   const auto folder = fs::path(markdown).replace_extension(".pictures");

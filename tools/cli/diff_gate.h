@@ -12,8 +12,8 @@ struct GateFiles {
   std::string rules, markdown;
 };
 
-/// Holds the change against the rules, prints what came of them, and writes the Markdown with a
-/// picture beside it where a discrepancy of a run can be drawn. 1 unless the gate passes.
+/// Checks the change against the rules, prints the results, and writes the Markdown with a picture
+/// beside it where a discrepancy of a run can be drawn. 1 unless the gate passes.
 int run_gate(const GateInput& input, const GateFiles& files, Invocation& invocation);
 
 }  // namespace parallax::tools

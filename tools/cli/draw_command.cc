@@ -40,7 +40,7 @@ struct DrawOptions {
   bool robot = false;
 };
 
-/// What stands above a picture.
+/// Text above a picture.
 struct Caption {
   std::string title, subtitle;
   bool warns = false, parts = false;
@@ -142,7 +142,7 @@ int draw_robot(const DrawOptions& options, Invocation& invocation) {
   return 0;
 }
 
-/// Where and in what model and simulation part.
+/// The place where model and simulation part, and the differences.
 struct DrawnParting {
   std::optional<std::size_t> event;
   std::vector<harness::ShownDifference> differences;
@@ -152,8 +152,8 @@ struct DrawnParting {
   bool is_clean = false;  // it is known that they do not part
 };
 
-/// What the observations on record say, held against the trace; of an executed plan what the report
-/// says, which may be missing.
+/// The parting by the recorded observations, compared with the trace; for an executed plan, by the
+/// report, which may be missing.
 DrawnParting drawn_parting(const harness::RecordedRun& run, const ScenarioModel& loaded,
                            const harness::CampaignTrace& trace, const std::string& folder,
                            Invocation& invocation) {
@@ -182,7 +182,7 @@ DrawnParting drawn_parting(const harness::RecordedRun& run, const ScenarioModel&
   const harness::ModelFluents fluents(symbols);
   const auto judgement =
       harness::judge(*loaded.scenario.mapping, fluents, trace, run.record.observations);
-  // Of one that went elsewhere the report knows whether the model admits that.
+  // An execution that left the trace may still be one of the model: the report tells.
   out.is_clean = judgement.matches(comparison) || (is_over && told == nullptr);
   if (out.is_clean || trace.event_count() == 0) return out;
   out.event = static_cast<std::size_t>(harness::event_of(judgement, comparison));
@@ -295,7 +295,7 @@ base::Result<Album> album_of_run(const harness::RecordedRun& run, const harness:
   return album_of(run, scenario, parting, folder, invocation.sink(), recorded,
                   [&](std::size_t i, const harness::ActionCall& call) {
                     auto outcome = recorded.act(call.controller, call.arguments);
-                    // The difference of two times would not be what it was to the last bit.
+                    // The difference of two times would not be the same to the last bit.
                     const auto& known = run.record.outcomes;
                     if (i < known.size()) outcome.sim_time_s = known[i].sim_time_s;
                     return outcome;

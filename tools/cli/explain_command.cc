@@ -29,8 +29,8 @@ struct ExplainOptions {
   CommandPermission commands;
 };
 
-/// The model with every axiom's clauses as it says them, whatever other axioms settle; if it is too
-/// large for that, as it is solved.
+/// The model with every axiom's clauses unsimplified by other axioms; if it is too large for that,
+/// as it is solved.
 std::optional<compiler::CompiledModel> compile(const ExplainOptions& options,
                                                Invocation& invocation) {
   if (names_artifact(options.model)) {  // what it says was settled when it was compiled
@@ -55,7 +55,7 @@ void report_cut_short(const runtime::MinimalSets& found, Invocation& invocation)
                                              : "the sets may not be what was asked for");
 }
 
-/// Minimal sets of contradictory axioms, each printed as soon as it was looked at.
+/// Minimal sets of contradictory axioms, each printed as soon as it was examined.
 int explain_contradiction(const compiler::CompiledModel& model, const SetOptions& options,
                           Invocation& invocation) {
   const bool as_json = invocation.options().json;
@@ -81,8 +81,8 @@ int explain_contradiction(const compiler::CompiledModel& model, const SetOptions
   return 0;
 }
 
-/// Makes further simulations, if they may be made and are needed; why not is told. The first time
-/// also some from the very start that failed.
+/// Makes further simulations, if they are permitted and needed; a remark tells why not. The first
+/// time, also repeats the very start that failed.
 base::Result<std::vector<harness::SampleRecord>> make_further_runs(const ExplainOptions& options,
                                                                    const RecordedDiscrepancy& found,
                                                                    std::string& not_made,
@@ -91,7 +91,7 @@ base::Result<std::vector<harness::SampleRecord>> make_further_runs(const Explain
   const auto& sink = invocation.sink();
   std::vector<harness::SampleRecord> none;
   if (options.further.runs == 0) return none;
-  // By the name that was found, which has been told.
+  // Uses the name under which the scenario was found, which a remark has told.
   const RunFolderOptions folder{options.model.models.front(),
                                 std::filesystem::path(found.loaded.scenario.file).string()};
   auto loaded =
@@ -128,7 +128,7 @@ base::Result<std::vector<harness::SampleRecord>> make_further_runs(const Explain
   return made;
 }
 
-/// What kind of cause it is: by the runs on record, and where these say too little by further ones.
+/// The kind of cause, by the recorded runs and, where these are too few, by further ones.
 base::Result<CauseEvidence> with_further_runs(const ExplainOptions& options,
                                               const RecordedDiscrepancy& found,
                                               CauseEvidence evidence, Invocation& invocation) {
@@ -140,7 +140,7 @@ base::Result<CauseEvidence> with_further_runs(const ExplainOptions& options,
       invocation.stopped())
     return evidence;
   SameStart persistence;
-  // Twice as many again, for as long as they do not tell.
+  // Doubles the number of runs for as long as they do not tell.
   for (auto asked = options; true; asked.further.enough *= 2) {
     std::string not_made;
     const auto further = make_further_runs(asked, found, not_made, persistence, invocation);
@@ -160,7 +160,8 @@ base::Result<CauseEvidence> with_further_runs(const ExplainOptions& options,
   }
 }
 
-/// Why the model excludes what was seen: in words first, then the sets, then the kind of cause.
+/// Explains why the model excludes the observations: in words first, then the sets, then the kind
+/// of cause.
 int explain_discrepancy(const RecordedDiscrepancy& found, const ExplainOptions& all_options,
                         Invocation& invocation) {
   const auto& options = all_options.sets;
@@ -185,7 +186,7 @@ int explain_discrepancy(const RecordedDiscrepancy& found, const ExplainOptions& 
   }
   const auto recorded = gather_evidence(all_options.model.models.front(), found, {}, invocation);
   if (!recorded) return 0;
-  // Contradictory runs are told of first: then it is no axiom that has to change at once.
+  // Contradictory runs are reported first: then no axiom has to change at once.
   const bool cause_first = recorded->finding.contradictory_starts > 0;
   if (cause_first && !as_json) invocation.result(cause_text(*recorded) + '\n');
   std::vector<Contradiction> sets;

@@ -36,7 +36,7 @@ bool is_smallest(const runtime::MinimalSets& found) {
                           found.sets.front().size() <= found.lower_bound);
 }
 
-/// What is known of the sets that are not shown.
+/// Tells what is known of the sets that are not shown.
 std::string claim(const runtime::MinimalSets& found, const SetOptions& options) {
   if (options.all) {
     return found.proven ? "these are all minimal sets" : "stopped: there may be further sets";
@@ -61,7 +61,7 @@ const char* proof_word(ProofVerdict verdict) {
   return "";
 }
 
-/// What the sets are held against.
+/// The observations that the sets contradict.
 std::string observed_text(const ObservedRun* run, bool verbose = true) {
   std::string out;
   if (run == nullptr) return out;

@@ -28,7 +28,7 @@ struct ExportOptions {
   std::string output;
 };
 
-/// The one that is named, else the one that `replay` takes.
+/// The named simulation, else the one that `replay` takes.
 std::optional<harness::SampleId> sample_to_export(const ExportOptions& options,
                                                   Invocation& invocation) {
   const auto named = parse_sample_option(options.sample, invocation.sink());

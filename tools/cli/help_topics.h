@@ -5,8 +5,7 @@
 
 namespace parallax::tools {
 
-/// What is true of all commands and belongs to none: `parallax help TOPIC`, and sections of the
-/// manual.
+/// Text about all commands together: `parallax help TOPIC`, and sections of the manual.
 struct HelpTopic {
   std::string_view name;   // as it is asked for
   std::string_view title;  // in a list of them

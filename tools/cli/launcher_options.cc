@@ -14,7 +14,7 @@
 namespace parallax::tools {
 namespace {
 
-constexpr double kBeatsInSilence = 5.0;  // so many may be lost on the way, but one
+constexpr double kBeatsInSilence = 5.0;  // all but one of these may be lost on the way
 
 }  // namespace
 

@@ -34,8 +34,8 @@ std::vector<std::string> fleet_worker(const ScenarioModel& loaded, const harness
 /// words where no place is named.
 std::vector<std::string> launcher_words(const LauncherOptions& options);
 
-/// Tells at the end of the work what became of the places. `fleet` may be null. False: what was
-/// found does not count.
+/// Reports at the end what became of the places. `fleet` may be null. False: the results do not
+/// count.
 bool report_fleet(const std::shared_ptr<harness::Fleet>& fleet, Invocation& invocation);
 
 }  // namespace parallax::tools

@@ -43,15 +43,14 @@ base::Reported usage(const std::string& message, Invocation& invocation) {
   return invocation.sink().error_about(codes::kUsage, "", message);
 }
 
-/// A run folder, as it is held against the ledger.
+/// A run folder, with its comparison to the ledger.
 struct NamedRun {
   std::string folder;
   std::string scenario;  // its name in the ledger
   ShownRun run;
 };
 
-/// Where the run's scenario lies: the first line of its journal says in which folder it was
-/// started.
+/// Finds the run's scenario: the first line of its journal says in which folder it was started.
 fs::path scenario_of(const std::string& folder, const ShownRun& run) {
   std::ifstream file(fs::path(folder) / harness::kJournalName, std::ios::binary);
   constexpr std::size_t kLongestHeader = std::size_t{1} << 20U;
@@ -207,7 +206,7 @@ int check(const LedgerOptions& options, Invocation& invocation) {
 
 // add
 
-/// The axiom that contradicts what was seen, and the kind of cause, as far as they can be told.
+/// The axiom that contradicts the observations, and the kind of cause, as far as they can be found.
 void add_blame(const NamedRun& run, const std::string& sample, const LedgerOptions& options,
                Invocation& invocation, LedgerEntry& entry) {
   Context own(invocation.form(), invocation.stop());
@@ -254,7 +253,7 @@ struct OpenLedger {
   Ledger ledger;
   std::string text;
 
-  /// Takes over a text that was edited; it says what it should, or it would not be here.
+  /// Takes over an edited text, which was checked when it was made.
   void take(std::string edited, base::SourceFiles& files, base::DiagnosticSink& sink) {
     text = std::move(edited);
     if (auto read = harness::parse_ledger(files.add("ledger", text), files, sink)) ledger = *read;
@@ -291,7 +290,7 @@ bool save(const LedgerOptions& options, const std::string& before, const std::st
   return base::write_file_atomically(options.ledger, text, sink).has_value();
 }
 
-/// What `add` has done so far.
+/// The additions of `add` so far.
 struct Additions {
   OpenLedger ledger;
   std::string text;
@@ -299,7 +298,8 @@ struct Additions {
   bool back = false;
 };
 
-/// Adds what one run shows and the ledger does not know; false if its layout does not allow that.
+/// Adds the discrepancies of one run that the ledger does not know; false if its layout does not
+/// allow that.
 bool add_run(const NamedRun& run, const LedgerOptions& options, const std::string& revision,
              Invocation& invocation, Additions& all) {
   constexpr std::size_t kMostAdded = 100, kMostBlamed = 20;

@@ -21,8 +21,8 @@ const CommonOptions* g_options = nullptr;  // for the handler of failed allocati
 std::mutex g_stopped_mutex;
 std::string g_stopped_text;
 
-/// Leaves the text out where standard output is being written to just now: then a line is cut off,
-/// which no reader takes for the end.
+/// Leaves the text out while standard output is being written to: the cut-off line shows that the
+/// list was stopped.
 void write_stopped_text() {
   const std::unique_lock lock(g_stopped_mutex, std::try_to_lock);
   if (lock.owns_lock()) print_if_free(g_stopped_text);

@@ -10,9 +10,9 @@
 
 namespace parallax::tools {
 
-/// Holds --time-limit and --memory-limit over all phases of a command. When the time is over the
-/// stop flag is raised; a phase that does not look at it within 1.5 s is ended with exit
-/// code 4 and a message. What was finished is on disk by then.
+/// Enforces --time-limit and --memory-limit over all phases of a command. When the time is over the
+/// stop flag is raised; a phase that does not check it within 1.5 s is ended with exit code 4 and a
+/// message. Finished output is on disk before that.
 class LimitGuard {
  public:
   explicit LimitGuard(const CommonOptions& options);
@@ -43,7 +43,7 @@ class StoppedText {
 /// Reports the limit in the form that the options ask for and ends the process with 4.
 [[noreturn]] void end_for_limit(const CommonOptions& options, const std::string& limit);
 
-/// Raised by SIGINT, SIGTERM and the time limit; whoever works in a loop looks at it.
+/// Raised by SIGINT, SIGTERM and the time limit; every loop checks it.
 std::atomic<bool>& stop_flag();
 /// Installs the handlers. A second signal ends the program at once.
 void install_signal_handlers();

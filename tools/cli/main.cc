@@ -29,7 +29,7 @@ constexpr const char* kFooter =
     "5 internal error, 130 and 143 interrupted.\n"
     "More: parallax help exit-codes, files, output, seeds, trust, limits; parallax COMMAND --help.";
 
-/// The words that are this program's: what stands behind `--` is a command of another's.
+/// The arguments of this program: those behind `--` are a command of another program.
 std::vector<std::string> own_words(int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + std::max(argc, 1));
   words.erase(std::find(words.begin(), words.end(), "--"), words.end());
@@ -70,7 +70,7 @@ int usage_error(const ParsedLine& line, std::string_view command, int argc, char
   return 2;
 }
 
-/// By what one does with them, in the order in which one comes to it.
+/// Groups of commands by task, in the order of a user's work.
 std::vector<Command> all_commands(const Program& program) {
   std::vector<Command> all;
   all.reserve(64);  // to grow is to copy every table
@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
   try {
     return close_output(parallax::tools::run(argc, argv));
   } catch (const std::exception& error) {
-    // A broken contract, or the machine has no memory or threads left.
+    // A broken contract, or the machine is out of memory or threads.
     base::DiagnosticSink sink;
     const bool starved = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
                          dynamic_cast<const std::system_error*>(&error) != nullptr;

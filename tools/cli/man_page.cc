@@ -23,7 +23,7 @@ std::string upper(std::string_view text) {
   return out;
 }
 
-/// A range is said where it means something: not the bounds of what a machine can count.
+/// A range is shown only if it means something, not where it is that of a machine type.
 struct RangeText {
   std::string operator()(std::monostate) const { return ""; }
   std::string operator()(const OneOf& one) const {
@@ -56,7 +56,7 @@ struct DefaultText {
   }
 };
 
-/// What stands in the place of the value: a word of the kind that it is.
+/// Placeholder for the value of an option: a word for its kind.
 std::string value_word(const Option& option) {
   if (value_form(option) == ValueForm::kNone) return "";
   if (!option.value_name.empty()) return option.value_name;

@@ -20,7 +20,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// Reports that there is no `word` there, with the nearest of those that are.
+/// Reports that there is no such `word`, with the nearest existing one.
 void report_no_such(const std::string& what, const std::string& word, const Names& known,
                     Invocation& invocation) {
   auto built = invocation.sink().error_about(
@@ -37,7 +37,7 @@ const OptionTable* command_named(const Program& program, const std::string& name
   return nullptr;
 }
 
-/// What the program prints for these words and --help.
+/// The output of the program for these words and --help.
 std::string help_for(const Program& program, Names words) {
   words.insert(words.begin(), program.table.name());
   words.emplace_back("--help");

@@ -7,8 +7,8 @@
 
 namespace parallax::tools {
 
-/// The commands that tell of the others: help, man, completion. `program` has all commands when one
-/// of them runs; `commands` are those that there are besides.
+/// The commands about other commands: help, man, completion. `program` has all commands when one of
+/// them runs; `commands` are the other ones.
 std::vector<Command> manual_commands(const Program& program, const std::vector<Command>& commands);
 
 }  // namespace parallax::tools

@@ -5,8 +5,8 @@
 
 namespace parallax::tools {
 
-/// `suite --merge`: reports of the results of shards what one suite would have reported; the exit
-/// code.
+/// `suite --merge`: reports from the results of shards what one whole suite would have reported;
+/// returns the exit code.
 int merge_shards(const SuiteOptions& options, Invocation& invocation);
 
 }  // namespace parallax::tools

@@ -54,7 +54,7 @@ int check_run(const MonitorOptions& options, Invocation& invocation) {
     invocation.result(monitor_text(*runs));
   }
   const auto verdict = verdict_of(*runs);
-  // A run of which some was not checked is undecided: this one was checked to its end.
+  // A run that was not checked completely is undecided, so a consistent one was checked to its end.
   if (verdict == MonitorVerdict::kConsistent) invocation.answered();
   return exit_code(verdict);
 }

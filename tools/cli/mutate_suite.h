@@ -18,8 +18,8 @@ struct MutateOptions {
 };
 void add_mutate_options(OptionTable& command, MutateOptions& options);
 
-/// Prints what the suite would not notice; the exit code. `score` has what the suite's own options
-/// say.
+/// Prints the mutants that the suite would not notice; returns the exit code. `score` has the
+/// suite's own options.
 int mutate_suite(const std::vector<SuiteCase>& cases, const MutateOptions& options,
                  MutationOptions score, Invocation& invocation);
 

@@ -10,7 +10,7 @@
 
 namespace parallax::tools {
 
-/// What the text of an option's value has to be.
+/// Checks of an option's value. This one allows a word of the list.
 struct OneOf {
   std::vector<std::string> values;
 };
@@ -103,7 +103,7 @@ class OptionTable {
   void footer(std::string text) { footer_ = std::move(text); }
   /// Leaves the command out of the help.
   void hide() { hidden_ = true; }
-  /// What one does with the command: the help of the program lists it there.
+  /// The task that the command is for: the help of the program lists it under that.
   const std::string& subject() const { return subject_; }
   void set_subject(std::string text) { subject_ = std::move(text); }
   /// Options that are added from here on stand below this heading. Returns the one before.

@@ -12,14 +12,14 @@ namespace parallax::tools {
 
 /// Prints at once. False if that failed, now or before.
 bool print(const std::string& text, const base::LinesStyle& style = {});
-/// Prints byte by byte what another program reads: a model, a proof. On a terminal as `print`.
+/// Prints bytes for another program: a model, a proof. On a terminal as `print`.
 bool print_exact(const std::string& text);
 /// Prints unless another thread is printing at this moment: for a limit that ends the process.
 void print_if_free(const std::string& text);
 
 /// The `errno` of the first write that failed, 0 if none did.
 int output_error();
-/// The user was told of it.
+/// Records that the user was told of it.
 void output_error_is_told();
 /// Ends standard output, at the end of the program. Returns `code` if all that was printed was
 /// written, else tells so and returns another than 0.

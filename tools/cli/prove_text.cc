@@ -13,13 +13,13 @@
 namespace parallax::tools {
 namespace {
 
-/// No more is said to be proved than is: shares of what is settled are rounded down.
+/// Shares of the settled volume are rounded down, so that no more is claimed than is proved.
 std::string proved(double share, int width = 8) {
   return fmt::format("{:>{}}", harness::percent_down(share), width);
 }
 std::string open_share(double share) { return fmt::format("{:>8}", harness::percent_up(share)); }
 
-/// How many boxes have the verdict, and what is met in most of them.
+/// The number of boxes with the verdict, and the cause that accounts for most of their volume.
 std::string boxes_text(const harness::TestCertificate& test, harness::BoxVerdict verdict) {
   std::map<std::string, double> culprits;
   std::int64_t boxes = 0;

@@ -75,7 +75,7 @@ harness::RareEventMethod rare_method(const RateOptions& options) {
                                        : harness::RareEventMethod::kImportance;
 }
 
-/// What is about counting runs has no meaning for an estimate from chosen starts.
+/// Refuses options about counting runs for an estimate from chosen starts.
 base::Status check_method(const RateOptions& options, base::DiagnosticSink& sink) {
   if (options.method == "counting") return base::Unit{};
   const std::pair<const char*, bool> asked[] = {{"--until-width", options.rates.until_width > 0.0},
@@ -96,7 +96,7 @@ base::Status check_method(const RateOptions& options, base::DiagnosticSink& sink
       fmt::format("--method {} resolves nothing with fewer than {} runs", options.method, least));
 }
 
-/// With a method that reaches what is too rare to be counted.
+/// Uses a method for events that are too rare to be counted.
 int run_rare(const RateOptions& options, const ScenarioModel& loaded, harness::TraceFeed& traces,
              const harness::SimulatorFactory& simulator, Invocation& invocation) {
   auto rates = options.rates;

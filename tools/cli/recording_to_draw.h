@@ -9,8 +9,8 @@
 
 namespace parallax::tools {
 
-/// The recording of a simulation, if it can stand for it: it is whole, of this world, and says what
-/// the journal says. None, and `why`, otherwise.
+/// The recording of a simulation, if it can replace it: it is whole, of this world, and agrees with
+/// the journal. None, and `why`, otherwise.
 std::optional<harness::Recording> recording_to_draw(const std::string& folder,
                                                     const harness::RecordedRun& run,
                                                     const harness::WorldSpec& spec,

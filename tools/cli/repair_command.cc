@@ -30,7 +30,7 @@ struct RepairCommandOptions {
 
 constexpr int kProposals = 1, kNoneFound = 4;
 
-/// Says what was written, and what else changes with it.
+/// Reports the files that were written, and further effects of that.
 void tell_written(const std::vector<ChangedFile>& files, const std::vector<std::string>& world,
                   const Context& context) {
   for (const auto& file : files) context.remark("wrote " + file.name);
@@ -154,7 +154,7 @@ int repair(const RepairCommandOptions& options, Invocation& invocation) {
     return apply(*result, options, invocation);
   }
   if (result->proposals.empty()) return kNoneFound;
-  // What was found is right by itself, even if a limit kept others from being found.
+  // The proposals found are right by themselves, even if a limit kept others from being found.
   invocation.answered();
   return kProposals;
 }

@@ -26,7 +26,7 @@ struct ReplayOptions {
   CommandPermission commands;
 };
 
-/// Of a repetition that differs as well: it is what the simulator does now.
+/// Keeps the recording, even of a repetition that differs: it shows what the simulator does now.
 base::Status keep(const std::string& folder, const std::optional<harness::Recording>& moved,
                   Invocation& invocation) {
   auto& sink = invocation.sink();

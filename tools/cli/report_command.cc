@@ -33,7 +33,8 @@ struct ReportOptions {
 
 namespace fs = std::filesystem;
 
-/// Where the page goes: beside the run's other reports, or for a comparison where the user is.
+/// The place of the page: beside the run's other reports, or for a comparison in the current
+/// folder.
 std::string page_path(const ReportOptions& options) {
   if (!options.out.empty()) return options.out;
   if (options.folders.size() > 1) return "comparison.html";
@@ -49,7 +50,7 @@ bool is_over(const std::string& folder) {
   return error || journal <= report;
 }
 
-/// A folder that has something of a run, or that a run holds which has recorded nothing yet.
+/// A folder with files of a run, or one that is held by a run which has recorded nothing yet.
 bool is_run(const std::string& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) return false;
@@ -62,8 +63,7 @@ bool is_run(const std::string& folder) {
   return is_held;
 }
 
-/// A page replaces an earlier page and nothing else: not what it is made from, nor a stranger's
-/// file.
+/// A page replaces an earlier page only: never one of its inputs or another file.
 bool may_write(const std::string& path, base::DiagnosticSink& sink) {
   std::error_code error;
   if (!fs::is_regular_file(path, error) || fs::file_size(path, error) == 0) return true;
@@ -76,7 +76,7 @@ bool may_write(const std::string& path, base::DiagnosticSink& sink) {
   return false;
 }
 
-/// Writes the page again and again while the run goes on, and for the last time when it is over.
+/// Rewrites the page again and again while the run goes on, and for the last time when it is over.
 int watch(const ReportOptions& options, Invocation& invocation) {
   constexpr auto kPause = std::chrono::milliseconds(200);
   if (options.folders.size() > 1) {
@@ -101,7 +101,7 @@ int watch(const ReportOptions& options, Invocation& invocation) {
     const auto size = fs::file_size(journal, error);
     if (!error && size != seen) {
       seen = size;
-      // What could not be read of a line that is being written is no news.
+      // A line that is still being written cannot be read yet: its errors are dropped.
       Context own(invocation.form(), invocation.stop());
       const auto page = gather_page({folder, options.scenario, false, false, {}, {}}, own);
       if (page && !base::write_output(page_path(options), run_page(*page, {2}), invocation.files(),
@@ -109,7 +109,7 @@ int watch(const ReportOptions& options, Invocation& invocation) {
         return 0;
       }
     }
-    // Not oftener than the page loads itself.
+    // Not more often than the page reloads itself.
     for (int i = 0; i < 10 && !is_over(folder) && !invocation.stopped(); ++i) {
       std::this_thread::sleep_for(kPause);
     }

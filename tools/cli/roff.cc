@@ -5,7 +5,8 @@
 namespace parallax::tools {
 namespace {
 
-/// Every character as it is: `man` makes typographic ones of some that are meant to be typed.
+/// Escapes characters that `man` would replace by typographic ones although they are meant to be
+/// typed.
 std::string roff_text(std::string_view text) {
   std::string out;
   for (const char c : text) {

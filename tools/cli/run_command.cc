@@ -83,7 +83,7 @@ struct RunOptions {
   LauncherOptions launcher;
 };
 
-/// The command line has the last word over the scenario.
+/// The command line overrides the scenario.
 void apply(const RunOptions& options, harness::Scenario& scenario) {
   auto& criterion = scenario.criterion;
   if (!options.criterion.empty()) {
@@ -116,7 +116,7 @@ harness::CampaignOptions campaign_options(const RunOptions& options, const Scena
   harness::CampaignOptions campaign;
   campaign.seed = options.seed;
   campaign.jobs = options.jobs;
-  // Until all was seen: whatever is found on the way.
+  // Runs until everything was covered, whatever is found on the way.
   campaign.keep_going = options.keep_going || loaded.scenario.until_covered;
   campaign.resume = options.resume;
   campaign.all_hits = options.hits == "all";
@@ -140,7 +140,7 @@ harness::CampaignOptions campaign_options(const RunOptions& options, const Scena
   return campaign;
 }
 
-/// What a run came to, and the solver calls that it took.
+/// The result of a run, and the solver calls that it took.
 struct Ran {
   base::Result<harness::CampaignResult> result;
   std::int64_t solve_calls = 0;
@@ -168,7 +168,7 @@ Ran run_open(const ScenarioModel& loaded, const harness::SimulatorFactory& simul
   return {std::move(result), traces.solve_calls()};
 }
 
-/// What is about traces has no meaning for a plan that is executed.
+/// Refuses options about traces for a plan that is executed.
 base::Status check_closed(const RunOptions& options, const harness::Scenario& scenario,
                           base::DiagnosticSink& sink) {
   if (scenario.criterion.kind == harness::CriterionKind::kPaper) {

@@ -12,7 +12,7 @@
 
 namespace parallax::tools {
 
-/// Whom else a run asks, and about how many clean simulations.
+/// The second simulator that a run asks, and about how many clean simulations.
 struct OpinionOptions {
   std::string other;  // an engine, or a command; empty: nobody
   std::int64_t clean = harness::kUsualOpinions;
@@ -22,19 +22,19 @@ void add_opinion_options(OptionTable& command, OpinionOptions& options);
 /// The second opinion of one run. Everything that it is given outlives it.
 class OpinionOfRun {
  public:
-  /// Null if nobody is asked. Reports kUsage for an engine that cannot simulate the scenario's
-  /// world, or does so already.
+  /// Null if no second simulator is asked for. Reports kUsage for an engine that cannot simulate
+  /// the scenario's world, or does so already.
   static base::Result<std::unique_ptr<OpinionOfRun>> of(const OpinionOptions& options,
                                                         const ScenarioModel& loaded,
                                                         Invocation& invocation);
 
-  /// Notes what each simulation came to, and passes it on.
+  /// Records the result of each simulation, and passes it on.
   harness::SampleListener listener(harness::SampleListener next);
-  /// Starts the other simulator, before the run: what is wrong with it is told before hours of
+  /// Starts the other simulator before the run, so that its errors are reported before hours of
   /// work. False when stopped. Reports what a run reports of its simulator.
   base::Result<bool> start(const runtime::Symbols& symbols,
                            const harness::CampaignOptions& campaign);
-  /// Asks, and puts what is answered into the result. Nothing is asked of a run that did not end.
+  /// Asks the other simulator, and adds its answers to the result. An unfinished run asks nothing.
   base::Status ask(harness::TraceFeed& feed, harness::CampaignResult& result);
   base::Status ask_about_executions(harness::CampaignResult& result);
 

@@ -50,13 +50,13 @@ struct CommandPermission {
   bool allow = false;   // --allow-commands
   bool refuse = false;  // --no-commands
 };
-/// `named`: the command takes a scenario on its command line and starts its simulator unless told
-/// not to.
+/// `named`: the command takes a scenario on its command line and starts its simulator unless that
+/// is forbidden.
 void add_command_options(OptionTable& command, CommandPermission& permission, bool named);
 
-/// Makes the simulator that the scenario asks for, and says which command is started when the first
-/// one is. Reports kCommandNotPermitted for one that is not `permitted`. `invocation` outlives the
-/// factory. With a fleet workers of it have the simulators.
+/// Makes the simulator that the scenario asks for, and tells the command when the first one is
+/// started. Reports kCommandNotPermitted for one that is not `permitted`. `invocation` outlives the
+/// factory. With a fleet, its workers hold the simulators.
 base::Result<harness::SimulatorFactory> permitted_simulator(
     const ScenarioModel& loaded, bool permitted, Invocation& invocation,
     const std::shared_ptr<harness::Fleet>& fleet = nullptr);
@@ -74,12 +74,12 @@ void add_recorded_scenario_option(OptionTable& command, std::string& scenario);
 base::Result<std::optional<harness::SampleId>> parse_sample_option(const std::string& text,
                                                                    base::DiagnosticSink& sink);
 
-/// How far simulations are, on a line of its own that is written over; none unless standard error
-/// is a terminal. `\r\x1b[K` clears it.
+/// Progress of the simulations, on a line of its own that is overwritten; none unless standard
+/// error is a terminal. `\r\x1b[K` clears it.
 std::function<void(const harness::CampaignProgress&)> progress_on_terminal(
     const CommonOptions& options);
 
-/// "5%" or "5" as 0.05; nothing if it is no share from 0 to 100 %.
+/// "5%" or "5" as 0.05; none if it is not a share from 0 to 100 %.
 std::optional<double> share_of(std::string text);
 
 }  // namespace parallax::tools

@@ -30,14 +30,14 @@ std::string environment(const std::string& name) {
   return value == nullptr ? "" : value;
 }
 
-/// Expectations of models bring a limit of their own; scenarios say that they are fast.
+/// Cases with models have a limit of their own; scenarios are marked as fast.
 bool is_fast(const SuiteCase& one) {
   const auto* scenario = std::get_if<harness::Expectation>(&one.check);
   // Nobody knows what a scenario that cannot be read would have said.
   return scenario == nullptr || scenario->fast || one.is_broken;
 }
 
-/// The cases that are asked for; those that passed last time leave under --rerun-failed.
+/// The selected cases; under --rerun-failed without those that passed last time.
 base::Result<std::vector<SuiteCase>> wanted_cases(const SuiteOptions& options,
                                                   const StoredCases& earlier,
                                                   Invocation& invocation) {
@@ -109,8 +109,8 @@ LoopOptions loop_options(const SuiteOptions& options, bool keep_passes, const Su
   return out;
 }
 
-/// What stands in --out. Reported are none where the options ask for some, and those of another
-/// suite where they are to be gone on with.
+/// Reads the results in --out. Reports missing ones where the options need them, and those of
+/// another suite where they are to be resumed.
 base::Result<StoredResults> earlier_results(const SuiteOptions& options,
                                             const SuiteIdentity& identity,
                                             base::DiagnosticSink& sink) {

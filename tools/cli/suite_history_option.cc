@@ -13,7 +13,7 @@
 namespace parallax::tools {
 namespace {
 
-/// All that the cases were made from.
+/// All inputs of the cases.
 std::set<std::string> files_of(const SuiteRecord& record) {
   std::set<std::string> out;
   for (std::size_t i = 0; i < record.cases().size(); ++i) {

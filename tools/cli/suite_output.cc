@@ -10,7 +10,7 @@
 namespace parallax::tools {
 namespace {
 
-/// A JUnit report, as far as one can see.
+/// Does the file look like a JUnit report?
 bool is_junit(std::string_view text) {
   constexpr std::size_t kHead = 4096;
   return text.starts_with("<") &&

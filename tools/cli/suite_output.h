@@ -8,18 +8,18 @@
 namespace parallax::tools {
 
 /// May the files be written that the options name? Results replace earlier results, a report
-/// replaces an earlier report, or an empty file, and no file that the suite reads.
+/// replaces an earlier report or an empty file, and no file that the suite reads is replaced.
 bool may_write(const SuiteOptions& options, Invocation& invocation);
 
 /// The cases that may fail for now, if a list was named.
 base::Result<harness::Quarantine> quarantine_of(const SuiteOptions& options,
                                                 Invocation& invocation);
 
-/// Names cases in quarantine that pass and, of a `whole` suite, those that are none: a list of
+/// Names cases in quarantine that pass and, of a `whole` suite, entries without a case: a list of
 /// known failures must not outlive them.
 void speak_of_quarantine(const SuiteRecord& record, bool whole, const Invocation& invocation);
 
-/// Prints and writes what came out; the exit code.
+/// Prints and writes the results; returns the exit code.
 int conclude(SuiteRecord& record, const SuiteOptions& options, Invocation& invocation);
 
 }  // namespace parallax::tools

@@ -30,7 +30,7 @@ constexpr auto kEndGrace = std::chrono::milliseconds(1500);
 constexpr auto kCleaning = std::chrono::seconds(5);  // against programs that never stop forking
 constexpr int kCannotStart = 127;                    // as shells have it
 
-/// The processes whose parent this one is, also those that it has taken over.
+/// The children of this process, including those that it has taken over.
 std::vector<pid_t> own_children() {
   std::vector<pid_t> children;
   const auto self = ::getpid();
@@ -77,8 +77,8 @@ int end_like(int status) {
   return 128 + number;
 }
 
-/// Waits for the program; ends earlier when whoever started us is gone or has asked for the end,
-/// and the program, which gets the same signal, does not follow. The status of the program.
+/// Waits for the program and returns its status. Ends earlier if our parent is gone or has asked
+/// for the end and the program, which gets the same signal, does not follow.
 int wait_for_end(pid_t program, pid_t parent) {
   sigset_t waited;
   sigemptyset(&waited);
@@ -103,8 +103,8 @@ int wait_for_end(pid_t program, pid_t parent) {
 
 int supervise(const std::vector<std::string>& command) {
   const auto parent = ::getppid();
-  // What the program starts and leaves behind comes to us, and the end of our parent, who had us
-  // killed by it, is a signal that we can clean up after.
+  // Processes that the program leaves behind become our children. The end of our parent sends us
+  // SIGTERM, so that we can clean up.
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   base::SpawnOptions options;
@@ -115,7 +115,7 @@ int supervise(const std::vector<std::string>& command) {
                             std::strerror(program.error)));
     return kCannotStart;
   }
-  // The ends of the pipes are the program's alone: that it closes them has to be seen.
+  // Only the program holds the ends of the pipes, so that their closing is noticed.
   const base::Descriptor null(::open("/dev/null", O_RDWR | O_CLOEXEC));
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     ::dup2(null.get(), stream);

@@ -31,7 +31,7 @@ struct TracesOptions {
   CertifyOption certify;
 };
 
-/// Where a list that is complete and empty leads to.
+/// Message for a list that is complete and empty.
 void point_to_explanation(const TracesOptions& options, const Invocation& invocation) {
   std::string command = "parallax explain";
   for (const auto& model : options.model.models) command += " " + model;
@@ -41,7 +41,7 @@ void point_to_explanation(const TracesOptions& options, const Invocation& invoca
   invocation.remark(fmt::format("no trace: `{}` says which axioms exclude each other", command));
 }
 
-/// Says what is known of the rest: complete, up to the bound, or stopped by the limit.
+/// Tells what is known of the other traces: complete, up to the bound, or stopped by the limit.
 void close_list(const TracesOptions& options, const compiler::CompiledModel& model,
                 const TraceWriter& writer, runtime::ListFormat* listing, const Ending& ending,
                 const TraceCertifier& certifier, const BestTraces* best, double wall_s,
@@ -96,8 +96,8 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
   }
 }
 
-/// `--count` without a plan or constraints: no trace needs to be made. None: orbits have to be
-/// listed to be counted.
+/// `--count` without a plan or constraints, for which no trace needs to be made. None: orbits have
+/// to be listed to be counted.
 std::optional<int> count_only(const TracesOptions& options, const compiler::CompiledModel& model,
                               TraceCertifier& certifier, const BestTraces* best,
                               std::chrono::steady_clock::time_point start, Invocation& invocation) {
@@ -198,7 +198,7 @@ bool is_usable(const TracesOptions& options, Invocation& invocation) {
   return true;
 }
 
-/// What a model without a plan can be asked for, and one with a plan cannot.
+/// Does it use options for models without a plan? Those with a plan do not support them.
 bool asks_for_models(const TracesOptions& options) {
   return options.search.sample > 0 || options.search.from > 1 || options.distinct_given ||
          options.search.strategy != "auto";
@@ -295,7 +295,7 @@ int list_compiled(const TracesOptions& options, const compiler::Compilation& com
   std::optional<TraceCertifier> certifier;
   certifier.emplace(options.certify, options.model.models, model, invocation);
   if (!certifier->ready()) return 0;
-  // Where the list says less, the optimum has a proof of its own.
+  // Where the list claims less, the optimum has a proof of its own.
   const auto prove_optimum = [&] {
     if (best == nullptr || !best->optimum().witness || !certifier->is_asked()) return;
     certifier.emplace(not_asked, options.model.models, model, invocation);
@@ -331,7 +331,7 @@ int list_compiled(const TracesOptions& options, const compiler::Compilation& com
   return writer.count() == 0 && options.expect_traces ? 1 : 0;
 }
 
-/// One best trace, or the best so far; of the others nothing is said.
+/// Prints one best trace, or the best so far; nothing is claimed about others.
 int list_witness(const TracesOptions& options, const compiler::Compilation& compilation,
                  BestTraces& best, StartTime start, Invocation& invocation) {
   const auto& model = compilation.model;
@@ -372,7 +372,7 @@ int list_best(const TracesOptions& options, compiler::Compilation& compilation, 
     return 0;
   }
   {
-    // That its files cannot be written is told before the search.
+    // Reports before the search that files cannot be written.
     const TraceCertifier early(options.certify, options.model.models, compilation.model,
                                invocation);
     if (!early.ready()) return 0;

@@ -41,9 +41,9 @@ struct Answer {
   std::optional<runtime::Trace> violation;
   runtime::Exploration exploration = runtime::Exploration::kStopped;
   std::vector<std::string> bounds;
-  std::optional<compiler::Timepoint> dead_end;  // of prefixes that violate it and cannot go on
-  bool by_symmetry = false;  // that there is none was found among representatives only
-  bool by_cubes = false;     // it was searched without a log
+  std::optional<compiler::Timepoint> dead_end;  // length of a violating prefix that cannot go on
+  bool by_symmetry = false;  // the search for violations covered representatives only
+  bool by_cubes = false;     // it was searched by cubes, without a log
   std::string proof;         // "proof checked"; empty where there is nothing to prove
   std::string proof_origin;  // what made it, if it was accepted
   std::string proof_file;    // where it is kept
@@ -51,8 +51,7 @@ struct Answer {
   std::optional<PropertyBreak> broken;           // of a temporal property
 };
 
-/// A contradiction that takes more conflicts than this is not proved where symmetry or cubes may do
-/// without.
+/// Limit on conflicts for a proof of the contradiction where symmetry or cubes may do without one.
 constexpr std::int64_t kProvable = 20'000;
 
 Answer ask(const compiler::CompiledModel& model, std::unique_ptr<runtime::SatSolver> solver,
@@ -69,8 +68,8 @@ Answer ask(const compiler::CompiledModel& model, std::unique_ptr<runtime::SatSol
   return answer;
 }
 
-/// With a proof wherever one is asked for, or can be had at little cost; where that takes long and
-/// constants are interchangeable or there are jobs for cubes, without.
+/// Makes a proof where one is asked for or comes at little cost. Where it takes long, does without
+/// it if constants are interchangeable or there are jobs for cubes.
 Answer ask(const compiler::CompiledModel& model, TraceCertifier& certifier, bool insists,
            std::int64_t jobs) {
   std::optional<runtime::ModelSymmetry> symmetry;
@@ -112,7 +111,7 @@ std::string verdict(const Answer& answer) {
   return answer.exploration == runtime::Exploration::kStopped ? "inconclusive" : "holds";
 }
 
-/// What was performed at t: where in the plan, and how it went.
+/// An event at t: where in the plan it was performed, and how it went.
 struct PerformedStep {
   std::string event;
   std::string place;    // empty for an event that no plan performs
@@ -171,7 +170,7 @@ std::string answer_text(const compiler::CompiledModel& model, const Answer& answ
   return out + '\n';
 }
 
-/// What the answer rests on that the world has refuted.
+/// The known discrepancies that the answer rests on.
 std::string rests_on_text(const Answer& answer) {
   if (!answer.rests_on || verdict(answer) == "inconclusive") return {};
   if (answer.rests_on->empty()) {
@@ -273,7 +272,7 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   TraceCertifier certifier(certify, options.model.models, model, invocation);
   if (!certifier.ready()) return 0;
   auto answer = ask(model, certifier, !options.certify.file.empty(), options.jobs);
-  // Nothing can go wrong in a model without executions. One that goes on is known to have some.
+  // Without executions nothing can go wrong in a model. One that goes on is known to have some.
   if (!answer.violation && answer.exploration == runtime::Exploration::kAllTracesExplored &&
       report_if_unsatisfiable(model, model.horizon, invocation) == base::Known::kNo) {
     return 0;

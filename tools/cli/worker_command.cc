@@ -36,13 +36,13 @@ struct WorkerOptions {
 
 constexpr int kPeerGone = 5;
 
-/// The whole simulator of a scenario for somebody on another machine, in processes of its own as it
-/// would be there: what fails in it is told in an answer, and is no failure of ours.
+/// Serves the whole simulator of a scenario to another machine, in processes of its own as there.
+/// Its failures are reported in an answer, and are not failures of the worker.
 int serve_elsewhere(const WorkerOptions& options, ScenarioModel loaded, Invocation& invocation) {
   const auto& spec = loaded.scenario.simulator;
   if (!spec.models.empty()) {
     const auto before = invocation.files().size();
-    // Of the run, which may not be the written one.
+    // The horizon of the run, which may not be the written one.
     loaded.scenario.horizon = static_cast<std::int32_t>(options.world_horizon);
     auto world = load_world_model(loaded.scenario, invocation);
     if (!world) return 0;
@@ -73,7 +73,7 @@ int serve_scenario(const WorkerOptions& options, Invocation& invocation) {
       options.scenario, invocation.files(), invocation.sink(),
       harness::LoadLimits{invocation.form().allow_outside, &invocation.stop()});
   if (!scenario) return 0;
-  // Who started us read the same file a moment ago; an edit in between must not go unseen.
+  // Our parent read the same file a moment ago; an edit in between must be noticed.
   const auto hash = harness::hash_of_sources(invocation.files());
   if (!options.hash.empty() && hash != options.hash) {
     invocation.sink().error_about(codes::kScenarioChanged, options.scenario);

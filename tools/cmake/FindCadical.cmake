@@ -1,7 +1,7 @@
 # Debian's libcadical-dev is a static library without CMake or pkg-config files.
 find_path(Cadical_INCLUDE_DIR cadical.hpp)
 find_library(Cadical_LIBRARY cadical)
-# The packaged library calls itself sc2021, so the package is asked.
+# The packaged library reports version sc2021, so dpkg is asked for the package's version.
 execute_process(COMMAND dpkg-query -W -f=\${Version} libcadical-dev
                 OUTPUT_VARIABLE Cadical_VERSION ERROR_QUIET)
 if(NOT Cadical_VERSION)

@@ -2,7 +2,7 @@
 find_path(Gmp_INCLUDE_DIR gmpxx.h)
 find_library(Gmp_LIBRARY gmp)
 find_library(Gmpxx_LIBRARY gmpxx)
-# Its own header lies elsewhere on Debian, by architecture.
+# On Debian, gmp.h lies in a folder for the architecture.
 find_path(Gmp_C_INCLUDE_DIR gmp.h)
 set(Gmp_VERSION "")
 if(Gmp_C_INCLUDE_DIR)

@@ -1,5 +1,5 @@
-# Debian's libassimp-dev and libqhull-dev (the reentrant library). Their own package files name targets
-# that differ between versions, so this takes folders and names only.
+# Debian's libassimp-dev and libqhull-dev (the reentrant library). Target names in their package files differ
+# between versions, so only folders and file names are used.
 find_path(Meshes_assimp_INCLUDE_DIR assimp/Importer.hpp)
 find_library(Meshes_assimp_LIBRARY assimp)
 find_path(Meshes_qhull_INCLUDE_DIR libqhull_r/qhull_ra.h)

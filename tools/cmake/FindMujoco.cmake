@@ -1,5 +1,5 @@
-# Debian's libmujoco-dev. The engine is driven by its stages, which change from series to series, so
-# only the one that was tried will do.
+# Debian's libmujoco-dev. The engine calls MuJoCo's stages one by one, which change between release series, so
+# only the tested series is accepted.
 find_path(Mujoco_INCLUDE_DIR mujoco/mujoco.h)
 find_library(Mujoco_LIBRARY mujoco)
 if(EXISTS "${Mujoco_INCLUDE_DIR}/mujoco/mujoco.h")

@@ -1,5 +1,5 @@
-# Debian's libsdformat-dev. Its own package file looks for build tools that are not needed here, and
-# its flags ask for an older C++; of them only folders and names are taken.
+# Debian's libsdformat-dev. Its package file looks for build tools that are not needed here, and its flags ask
+# for an older C++, so only folders and file names are used.
 find_package(PkgConfig QUIET)
 if(PkgConfig_FOUND)
   pkg_check_modules(Sdformat_pc QUIET sdformat12)

@@ -1,4 +1,4 @@
-# Debian's liburdfdom-dev, whose headers lie beside those of the system.
+# Debian's liburdfdom-dev, with its headers among those of the system.
 find_path(Urdfdom_INCLUDE_DIR urdf_parser/urdf_parser.h)
 find_library(Urdfdom_LIBRARY urdfdom_model)
 find_library(Urdfdom_console_LIBRARY console_bridge)

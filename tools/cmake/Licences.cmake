@@ -1,5 +1,5 @@
-# What the program is made of and under which licences: an SPDX document, and the notices of what it
-# carries inside. Included when every library has been looked for.
+# Parts of the program and their licences: an SPDX document, and the notices of the code that the program
+# contains. Included after all libraries have been looked for.
 #
 # parallax_part(NAME DEBIAN_PACKAGE LICENCE HOW VERSION): HOW is CONTAINS (in the program's own bytes),
 # DYNAMIC_LINK (needed to start) or RUNTIME (loaded by a module, when it is needed).
@@ -7,7 +7,7 @@ set(PARALLAX_SPDX_PACKAGES "")
 set(PARALLAX_SPDX_RELATIONS "")
 set(PARALLAX_NOTICES "")
 function(parallax_part name package licence how version)
-  # Debian's words for it, where it is Debian's.
+  # For Debian's packages, source package and version as Debian names them.
   execute_process(COMMAND dpkg-query -W -f=\${source:Package}@\${source:Version} ${package}
     OUTPUT_VARIABLE source RESULT_VARIABLE code ERROR_QUIET)
   set(reference "")
@@ -40,7 +40,7 @@ function(parallax_part name package licence how version)
     {\"spdxElementId\": \"SPDXRef-parallax\", \"relationshipType\": \"${relation}\", \"relatedSpdxElement\": \"${id}\"}")
   set(PARALLAX_SPDX_PACKAGES "${PARALLAX_SPDX_PACKAGES}" PARENT_SCOPE)
   set(PARALLAX_SPDX_RELATIONS "${PARALLAX_SPDX_RELATIONS}" PARENT_SCOPE)
-  # Licences of what is carried along ask for their texts.
+  # Licences of contained code require that their texts come along.
   set(notice /usr/share/doc/${package}/copyright)
   if(how STREQUAL CONTAINS AND EXISTS ${notice})
     file(READ ${notice} text)
@@ -54,7 +54,7 @@ parallax_part(CLI11 libcli11-dev BSD-3-Clause CONTAINS "${CLI11_VERSION}")
 parallax_part(nlohmann-json nlohmann-json3-dev MIT CONTAINS "${nlohmann_json_VERSION}")
 parallax_part(Eigen libeigen3-dev MPL-2.0 CONTAINS "${Eigen3_VERSION}")
 parallax_part(three.js libjs-three MIT CONTAINS "")
-# Shared, and with code in their headers.
+# Shared libraries with code in their headers.
 parallax_part(fmt libfmt-dev MIT CONTAINS "${fmt_VERSION}")
 parallax_part(yaml-cpp libyaml-cpp-dev MIT CONTAINS "${yaml-cpp_VERSION}")
 parallax_part(GMP libgmp-dev "LGPL-3.0-or-later OR GPL-2.0-or-later" DYNAMIC_LINK "${Gmp_VERSION}")

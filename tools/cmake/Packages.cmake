@@ -1,9 +1,8 @@
-# Debian packages: `parallax` and `libparallax-dev`. tools/package makes them, docs/packages.md tells
-# of them.
+# Debian packages `parallax` and `libparallax-dev`, made by tools/package and described in docs/packages.md.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME parallax)
 set(CPACK_PACKAGE_VENDOR "The parallax authors")
-# The project has no address of its own: whoever passes packages on puts theirs.
+# The project has no address of its own: whoever distributes packages sets one.
 set(no_contact "The parallax authors <parallax@localhost>")
 set(PARALLAX_PACKAGE_CONTACT "${no_contact}" CACHE STRING "Maintainer of packages, NAME <ADDRESS>")
 set(CPACK_PACKAGE_CONTACT "${PARALLAX_PACKAGE_CONTACT}")
@@ -20,7 +19,7 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME parallax)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-# `bisect` and histories, and simulators in Python.
+# git is for `bisect` and histories, python3 for simulators in Python.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "git, python3")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 "finds where a formal model of a robot's environment and physics part
@@ -31,7 +30,7 @@ prediction and physics disagree, or what can be claimed when they do not.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libparallax-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-# What parallaxConfig.cmake looks for; scenarios with SDF want the module of the program.
+# The packages that parallaxConfig.cmake looks for; scenarios with SDF need the module of the program.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "libcadical-dev, libeigen3-dev, libfmt-dev, libgmp-dev, libode-dev, libyaml-cpp-dev, nlohmann-json3-dev")
 if("PARALLAX_HAS_URDFDOM" IN_LIST readers)
@@ -45,7 +44,7 @@ compile models, enumerate traces, simulate worlds and judge predictions.
 .
 Programs that are linked with them need C++20.")
 
-# The changelogs: what is new for users, and what Debian wants to know of packages.
+# Two changelogs: what is new for users, and the one that Debian requires of packages.
 set(made ${PROJECT_BINARY_DIR}/generated/packages)
 file(CONFIGURE OUTPUT ${made}/changelog.Debian @ONLY CONTENT
 "parallax (@PROJECT_VERSION@-1) unstable; urgency=medium

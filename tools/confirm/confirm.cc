@@ -14,7 +14,7 @@ namespace {
 
 using harness::StartVerdict;
 
-/// Of a parameter's range, where no other tolerance is asked for.
+/// Default tolerance of a border, as a fraction of the parameter's range.
 constexpr double kUsualTolerance = 0.01;
 
 double tolerance_of(const StartParameter& parameter, const std::optional<double>& asked) {

@@ -23,13 +23,13 @@ struct ConfirmOptions {
   std::optional<double> tolerance;  // of borders; none: a hundredth of the parameter's range
 };
 
-/// What simulates a recorded run again.
+/// Simulators that repeat a recorded run.
 struct ConfirmSimulators {
   harness::SimulatorFactory usual;
   harness::SimulatorFactory half_step;  // null: there is none
 };
 
-/// What the repetitions of a failing start say of its discrepancy.
+/// Verdict on the discrepancy of a failing start, from its repetitions.
 enum class ConfirmVerdict : std::uint8_t {
   kOpen,         // it came to no repetition
   kConfirmed,    // every repetition shows it, with other seeds and with half the step
@@ -41,16 +41,16 @@ enum class ConfirmVerdict : std::uint8_t {
 /// "open", "confirmed", "partly", "not-repeated", "seed", "step"
 std::string_view to_string(ConfirmVerdict verdict);
 
-/// A discrepancy, repeated and made simple.
+/// A repeated discrepancy, and its simplified start.
 struct Confirmation {
   harness::SampleId sample;
   std::uint64_t seed = 0;       // of that simulation
   std::string digest, words;    // likewise; what went wrong in it
-  std::string determinism;      // of the simulator, as it says
-  bool repeats_itself = false;  // so it promises, and takes seeds
-  std::int64_t repeats = 0;     // that were asked for, of either kind
+  std::string determinism;      // the simulator's own statement
+  bool repeats_itself = false;  // the simulator promises that, and takes seeds
+  std::int64_t repeats = 0;     // requested repetitions of either kind
   bool world_is_model = false, has_seeds = true, has_half_step = true;
-  /// The same start and seed once more; none: it was not simulated.
+  /// Result of the same start and seed once more; none: not simulated.
   std::optional<harness::StartVerdict> repeated;
   std::optional<harness::RecordDifference> difference;  // none: equal to the last bit
   std::optional<harness::Persistence> other_seeds, half_step;
@@ -59,9 +59,9 @@ struct Confirmation {
   bool has_law = false;            // of starts
   std::optional<harness::ShrunkStart> shrunk;
   TriedStarts::End end = TriedStarts::End::kNot;
-  std::int64_t runs = 0, budget = 0;  // simulations that it took, on record by now
+  std::int64_t runs = 0, budget = 0;  // simulations that it took, on record so far
   ConfirmVerdict verdict() const;
-  /// What a moved start shows is no matter of chance, as far as the repetitions tell.
+  /// The results of moved starts are not a matter of chance, as far as the repetitions tell.
   bool may_move() const;
   /// Everything that was asked for was simulated.
   bool finished() const {
@@ -70,8 +70,8 @@ struct Confirmation {
 };
 
 /// Repeats the discrepancy, then moves its start towards the middle of its cell. `found` has a
-/// parting. Reports as TriedStarts and same_start_runs do. What came of it is kept in
-/// RUN_DIR/confirm for `report`.
+/// parting. Reports as TriedStarts and same_start_runs do. The findings are kept in RUN_DIR/confirm
+/// for `report`.
 base::Result<Confirmation> confirm_discrepancy(const std::string& run_dir,
                                                const RecordedDiscrepancy& found,
                                                const ScenarioModel& as_run,
@@ -85,7 +85,7 @@ struct ThresholdOptions {
   std::optional<double> tolerance;
 };
 
-/// Where along one parameter of its start a discrepancy ends.
+/// The borders of a discrepancy along one parameter of its start.
 struct Threshold {
   harness::SampleId sample;
   std::uint64_t seed = 0;
@@ -114,7 +114,7 @@ std::string confirm_text(const Confirmation& confirmation, const std::string& ru
 std::string confirm_json(const Confirmation& confirmation);
 std::string threshold_text(const Threshold& threshold, const std::string& run_dir);
 std::string threshold_json(const Threshold& threshold);
-/// What was found out, a sentence each.
+/// The findings, a sentence each.
 std::vector<std::string> confirm_sentences(const Confirmation& confirmation);
 std::vector<std::string> threshold_sentences(const Threshold& threshold);
 
@@ -122,15 +122,16 @@ std::vector<std::string> threshold_sentences(const Threshold& threshold);
 /// part.
 std::string parting_words(const RecordedDiscrepancy& found);
 
-/// What `confirm` and `threshold` found out of one simulation, as its run folder has it: sentences.
+/// Findings of `confirm` and `threshold` about one simulation, as sentences, read from its run
+/// folder.
 struct KeptFindings {
   std::vector<std::string> confirmed;
   std::vector<std::string> thresholds;
 };
-/// Of this simulation of the run; empty where nothing is on record. A damaged file is one of which
-/// nothing is on record.
+/// Reads the findings about this simulation of the run; empty where nothing is on record. A damaged
+/// file counts as one without findings.
 KeptFindings kept_findings(const std::string& run_dir, const harness::SampleRecord& record);
-/// Keeps it, in the place of what was kept of the same simulation (and parameter).
+/// Writes the finding, in the place of the earlier one about the same simulation (and parameter).
 base::Status keep_finding(const std::string& run_dir, const Confirmation& confirmation,
                           base::DiagnosticSink& sink);
 base::Status keep_finding(const std::string& run_dir, const Threshold& threshold,

@@ -1,4 +1,4 @@
-// What `confirm` and `threshold` tell as JSON, and how a run folder keeps it.
+// JSON of `confirm` and `threshold`, and the findings that a run folder keeps.
 
 #include <fmt/format.h>
 

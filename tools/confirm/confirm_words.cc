@@ -1,4 +1,4 @@
-// What `confirm` and `threshold` tell, for people.
+// Text that `confirm` and `threshold` print.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ using harness::ParameterRole;
 using harness::Persistence;
 using harness::StartVerdict;
 
-/// With so many digits that values `apart` from each other differ in the last but one.
+/// With enough digits that values `apart` from each other differ in the last but one.
 std::string rounded(double value, double apart, harness::Round round = harness::Round::kNearest) {
   if (!(apart > 0.0)) return fmt::format("{}", value);
   const auto digits = std::ceil(-std::log10(apart)) + 1.0;
@@ -32,7 +32,7 @@ std::string value_text(const StartParameter& parameter, double value, double apa
   return with_unit(rounded(value, apart), parameter.unit);
 }
 
-/// What is seen where it does not happen.
+/// The outcome of starts that do not show the discrepancy.
 std::string beyond_words(StartVerdict verdict) {
   return verdict == StartVerdict::kOtherwise ? "another thing goes wrong" : "it does not";
 }
@@ -98,7 +98,7 @@ std::string step_words(const Confirmation& confirmation) {
   return confirmation.repeats == 0 ? "not asked for (--repeats 0)" : "not simulated";
 }
 
-/// Of which every repetition was lost or went wrong otherwise; empty: of none.
+/// The kind of which every repetition was lost or went wrong otherwise; empty: neither.
 std::string_view kind_that_does_not_tell(const Confirmation& confirmation) {
   const auto tells = [](const std::optional<Persistence>& seen) { return !seen || seen->runs > 0; };
   if (!tells(confirmation.other_seeds)) return "repetitions with other seeds";
@@ -137,7 +137,7 @@ std::string verdict_words(const Confirmation& confirmation) {
   return {};
 }
 
-/// Less than all of the repetitions show it: where the border lies depends on the seed, too.
+/// Do only some of the repetitions show it? Then the border depends on the seed, too.
 bool is_partial(const Confirmation& confirmation) {
   const auto part = [](const std::optional<Persistence>& seen) {
     return seen && seen->failures < seen->runs;
@@ -147,7 +147,7 @@ bool is_partial(const Confirmation& confirmation) {
 
 std::string border_words(const StartParameter& parameter, const BorderBracket& border) {
   const auto apart = border.width();
-  // Away from each other, so that the values shown hold the border between them as well.
+  // Rounded away from each other, so that the shown values enclose the border as well.
   const auto outwards = [&](double value, double other) {
     const auto round = value < other ? harness::Round::kDown : harness::Round::kUp;
     return with_unit(rounded(value, apart, round), parameter.unit);
@@ -208,7 +208,7 @@ std::vector<std::string> names_of(const Confirmation& confirmation, ParameterRol
   return out;
 }
 
-/// Of starts that are drawn by a law.
+/// Note for starts that are drawn by a law.
 constexpr const char* kLawWords =
     "The scenario draws starts by a law: a moved one keeps to the ranges of its parameters, not to "
     "what the law ties together or rules out.";
@@ -229,7 +229,7 @@ std::string end_words(TriedStarts::End end, std::int64_t budget) {
   return {};
 }
 
-/// What moving the start to the middle of the cell has shown, in one or two sentences.
+/// The result of moving the start to the middle of the cell, in one or two sentences.
 std::string shrunk_words(const Confirmation& confirmation) {
   if (!confirmation.may_move()) return {};
   if (confirmation.parameters.empty()) {

@@ -141,14 +141,14 @@ void TriedStarts::add_parameters(const harness::Sampler& sampler) {
       fixed_.push_back(name);
       continue;
     }
-    // What is drawn: the upper end belongs to the neighbour.
+    // Starts are drawn from the interval without its upper end, which belongs to the neighbour.
     const double lower = interval.lower + sampler.inset(), upper = interval.upper - sampler.inset();
     parameters_.push_back(
         {{name, lower, std::nextafter(upper, lower)}, unit_of(simulator(), name), *number});
   }
 }
 
-/// What is on record of the same trace with the seed of the simulation that failed.
+/// Takes the recorded starts of the same trace with the seed of the simulation that failed.
 base::Status TriedStarts::take_record() {
   const auto recorded = runs_->traces().find(found_.path.id.trace);
   if (line_ != nullptr && recorded != runs_->traces().end() &&

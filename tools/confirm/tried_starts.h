@@ -25,17 +25,17 @@ struct StartParameter {
 
 struct TriedStartsOptions {
   std::int64_t jobs = 1;
-  std::int64_t runs = 200;  // so many different starts are asked for at most
+  std::int64_t runs = 200;  // limit on different starts
   std::function<void(const harness::CampaignProgress&)> progress;
 };
 
-/// Simulations of a discrepancy's trace, or executions of its plan, from starts that are chosen,
-/// with the seed of the one that failed. They are on record in RUN_DIR/confirm, where a start that
-/// was simulated before is found, by whichever command; the run itself stays as it is.
+/// Simulations of a discrepancy's trace, or executions of its plan, from chosen starts, with the
+/// seed of the one that failed. They are recorded in RUN_DIR/confirm, where every command finds a
+/// start that was simulated before; the run itself stays as it is.
 class TriedStarts {
  public:
   static constexpr const char* kFolder = "confirm";
-  /// What ended it before everything that was asked for was simulated.
+  /// Reason why it ended before everything that was asked for was simulated.
   enum class End : std::uint8_t { kNot, kBudget, kStopped, kLost, kFailed };
 
   /// `found`, which has a parting, `as_run` (the scenario as it is run) and `context` outlive the
@@ -45,17 +45,17 @@ class TriedStarts {
       const harness::SimulatorFactory& make_simulator, const TriedStartsOptions& options,
       Context& context);
 
-  /// Those with a width, sorted by name; one value of each makes a StartPoint.
+  /// The parameters with a width, sorted by name; one value of each makes a StartPoint.
   const std::vector<StartParameter>& parameters() const { return parameters_; }
-  /// Of those that starts have, but only one value of.
+  /// Names of the parameters that have only one value.
   const std::vector<std::string>& fixed() const { return fixed_; }
   /// Starts are drawn by a law, whose ties and conditions moved starts do not keep.
   bool has_law() const { return has_law_; }
   const harness::SimulatorInfo& simulator() const { return runs_->bench().simulator(); }
   harness::StartPoint failing() const;
 
-  /// Verdicts of these starts, in order; of fewer where it came to an `end`. The same start costs
-  /// once. What is simulated does not depend on the number of jobs.
+  /// Verdicts of these starts, in order; fewer if it came to an `end`. A repeated start costs
+  /// nothing. The simulations do not depend on the number of jobs.
   std::vector<harness::StartVerdict> probe(const std::vector<harness::StartPoint>& starts);
   End end() const { return end_; }
   std::int64_t asked() const { return std::ssize(verdicts_); }  // different starts

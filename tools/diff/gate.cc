@@ -36,7 +36,8 @@ Rules gate_plans(const GateInput& input, const harness::GateRules::Plans& rules,
   return out;
 }
 
-/// Of lists of traces that may not be all: what one lacks is only known where the list is whole.
+/// Compares lists of traces that may be incomplete: that one lacks a trace is known only if it is
+/// complete.
 RuleResult set_rule(const char* name, const TraceSet& in, const TraceSet& other) {
   const auto only = only_in(in, other);
   RuleResult out{fmt::format("traces.{}", name), RuleOutcome::kKept, fmt::format("none {}", name)};

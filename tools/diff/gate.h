@@ -15,7 +15,7 @@ enum class RuleOutcome : std::uint8_t { kKept, kBroken, kUndecided };
 /// "kept", "broken", "not decidable"
 std::string_view to_string(RuleOutcome outcome);
 
-/// What came of one rule.
+/// Result of one rule.
 struct RuleResult {
   std::string rule;  // "models.lost_traces"
   RuleOutcome outcome = RuleOutcome::kKept;
@@ -48,8 +48,8 @@ struct GateInput {
   ModelDiffOptions models;
 };
 
-/// Holds the change from one revision to the other against the rules. Reports what loading them
-/// does, and kNoGateRules where the rules have no section for what is compared.
+/// Checks the change from one revision to the other against the rules. Reports what loading them
+/// reports, and kNoGateRules where the rules have no section for revisions of this kind.
 base::Result<GateReport> hold_gate(const GateInput& input, const harness::GateRules& rules,
                                    Context& context);
 
@@ -65,7 +65,7 @@ base::Result<std::vector<RuleResult>> gate_runs(const GateInput& input,
 base::Result<std::vector<RuleResult>> gate_rates(const GateInput& input,
                                                  const harness::GateRules::Rates& rules,
                                                  Context& context);
-/// The rules about rates, of results that were read. The probability that any of them is broken
+/// The rules about rates, for results that were read. The probability that any of them is broken
 /// although nothing changed is at most 1 - confidence: rules, traces and causes share that error.
 std::vector<RuleResult> hold_rates(const RatesRevision& before, const RatesRevision& after,
                                    const harness::GateRules::Rates& rules);
@@ -74,7 +74,7 @@ std::string gate_text(const GateReport& report);
 /// {"passed": false, "rules": [{"rule", "outcome", "words", "witness"}], "remarks": [...]}
 std::string gate_json(const GateReport& report);
 
-/// What the Markdown of a gate begins with, so that a newer one may take its place.
+/// First line of a gate's Markdown, so that a newer one may take its place.
 inline constexpr const char* kGateMark = "<!-- parallax gate -->";
 /// `picture`: a file to show, relative to the Markdown; may be empty.
 std::string gate_markdown(const GateReport& report, const std::string& picture);

@@ -96,7 +96,7 @@ base::Result<PropertyAnswer> ask_property(const std::string& path, RevisionKind 
     out.why = fmt::format("a limit was reached before it was known of {}", path);
     return out;
   }
-  // Of a model without executions everything holds, which says nothing.
+  // A model without executions satisfies everything, which says nothing.
   const auto sink = context.sink();
   const auto empty =
       report_if_unsatisfiable(compilation->model, compilation->model.horizon, context);

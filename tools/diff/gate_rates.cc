@@ -36,7 +36,7 @@ std::string not_comparable(const RatesRevision& before, const RatesRevision& aft
                        after.compare);
   }
   for (const auto* side : {&before, &after}) {
-    // Bounds that hold whenever one looks do so wherever the runs ended.
+    // Anytime-valid bounds hold wherever the runs ended.
     if (!side->complete && side->fixed) {
       return fmt::format("{} was stopped before all runs were made", side->name);
     }
@@ -76,8 +76,8 @@ struct SharedError {
   double of_one() const { return error / static_cast<double>(tests); }
 };
 
-/// Fisher's exact test; where a number of runs depends on what they showed, bounds that hold
-/// whenever one looks. The p-value that is shown is multiplied by the number of tests.
+/// Fisher's exact test; anytime-valid bounds where a number of runs depends on its results. The
+/// shown p-value is multiplied by the number of tests.
 GrowthEvidence weigh_growth(const RateCounts& before, const RateCounts& after,
                             const SharedError& shared) {
   if (before.fixed && after.fixed) {
@@ -115,7 +115,7 @@ RuleOutcome weigh_change(const RateCounts& before, const RateCounts& after,
 RuleResult rate_rule(const RatesRevision& before, const RatesRevision& after,
                      const harness::GateRules::Worse& worse, double error) {
   RuleResult out{"rates.worse", RuleOutcome::kKept, {}};
-  // Any of the traces may be found worse by chance.
+  // Any of the traces may look worse by chance.
   const SharedError shared{error, before.traces.size()};
   std::size_t broken = 0, open = 0;
   for (const auto& trace : before.traces) {
@@ -152,9 +152,9 @@ std::int64_t times(const RevisionRates& trace, const std::string& cause) {
   return 0;
 }
 
-/// Number of causes that either side shows, over all traces. Given how often each of them came on
-/// both sides together, any may have come on the newer side alone by chance, also those that did
-/// not: so many tests share the error, not only those that turned out to be of interest.
+/// Number of causes on either side, over all traces. Given the total counts of both sides, any of
+/// them may have come on the newer side alone by chance, also those that did not. So all of these
+/// tests share the error, not only the ones of interest afterwards.
 std::size_t causes_of_either(const RatesRevision& before, const RatesRevision& after) {
   std::size_t out = 0;
   for (const auto& trace : after.traces) {
@@ -169,7 +169,7 @@ std::size_t causes_of_either(const RatesRevision& before, const RatesRevision& a
   return out;
 }
 
-/// Causes that only the newer rates have: broken where that is hardly chance.
+/// Causes that only the newer rates have: broken where chance hardly explains that.
 RuleResult cause_rule(const RatesRevision& before, const RatesRevision& after, double error) {
   RuleResult out{"rates.gained_causes", RuleOutcome::kKept, "none gained"};
   const SharedError shared{error, causes_of_either(before, after)};
@@ -219,7 +219,7 @@ std::vector<RuleResult> hold_rates(const RatesRevision& before, const RatesRevis
     out.push_back(why_not.empty() ? rule() : RuleResult{name, RuleOutcome::kUndecided, why_not});
   };
   const auto worse = rules.worse.value_or(harness::GateRules::Worse{});
-  // The chance that a gate breaks where nothing changed is that of any of its rules.
+  // The probability that a gate breaks without a change is that of any of its rules.
   const double asked = (rules.worse ? 1.0 : 0.0) + (rules.gained_causes ? 1.0 : 0.0);
   const double error = (1.0 - worse.confidence) / std::max(1.0, asked);
   if (rules.worse) add("rates.worse", [&] { return rate_rule(before, after, worse, error); });

@@ -33,7 +33,7 @@ struct FoundDiscrepancy {
 
 struct RunSummary {
   std::string name, verdict;
-  bool stopped = false;                       // not all traces were looked at
+  bool stopped = false;                       // not all traces were examined
   std::string judged_by;                      // what decides on discrepancies, as JSON
   std::map<std::string, std::string> traces;  // verdicts by events
   std::vector<FoundDiscrepancy> discrepancies;

@@ -1,4 +1,4 @@
-// Rules of a gate about what scenarios say beside model and plan.
+// Rules of a gate about the settings of scenarios, beside model and plan.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -24,7 +24,7 @@ using compiler::Timepoint;
 
 namespace {
 
-/// None if the text is no right model.
+/// None if the text is not a valid model.
 std::optional<CompiledModel> compile_text(const std::string& text, Timepoint horizon,
                                           const ModelOptions& options, Context& context) {
   base::SourceFiles files;
@@ -83,7 +83,7 @@ std::string variant(const std::vector<Fact>& kept, const std::vector<Fact>& refu
   return compiler::canonical_text(facts);
 }
 
-/// By origin: does it stand where an edited fact stands?
+/// For each origin: is it on the line of an edited fact?
 std::vector<bool> edited_origins(const compiler::CompiledModel& model,
                                  const std::vector<Fact>& facts,
                                  const std::vector<std::size_t>& edited) {
@@ -145,7 +145,7 @@ class ModelComparison {
   }
 
  private:
-  /// A text is compiled for the shorter horizon; what is compiled already is cut.
+  /// A text is compiled for the shorter horizon; a compiled model is cut.
   bool align_horizons() {
     auto& a = out_.old_side;
     auto& b = out_.new_side;
@@ -165,7 +165,7 @@ class ModelComparison {
     return true;
   }
 
-  /// A compiled model has other facts than a text: then both are looked at as compiled.
+  /// Compiled models and texts have different facts: then both are compared as compiled.
   bool align_facts() {
     const bool mixed = (out_.old_side.kind == RevisionKind::kArtifact) !=
                        (out_.new_side.kind == RevisionKind::kArtifact);
@@ -263,8 +263,8 @@ std::optional<std::vector<Edit>> responsible_edits(const std::vector<Fact>& kept
     return admitted == base::Known::kYes;
   };
   auto undone = edits;
-  // What is needed only by an edit that is not (the declaration of a name) is not needed either, so
-  // that an edit that had to stay may go later. One edit alone is responsible for what it brings.
+  // Repeats until nothing changes: once an edit is dropped, an edit that it needed (the declaration
+  // of a name) may be dropped as well. A single edit is responsible for what it brings.
   for (bool again = true; again && undone.size() > 1 && !stopped;) {
     again = false;
     for (std::size_t i = 0; i < undone.size() && undone.size() > 1 && !stopped;) {
@@ -278,7 +278,7 @@ std::optional<std::vector<Edit>> responsible_edits(const std::vector<Fact>& kept
       }
     }
   }
-  // Several edits may be needless together though none is alone.
+  // Several edits together may be dispensable though none is alone.
   if (undone.size() <= kMaxEditsForSubsets && !stopped) {
     if (auto smaller = smallest_part(undone, suffices)) undone = *std::move(smaller);
   }

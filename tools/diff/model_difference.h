@@ -12,19 +12,19 @@
 
 namespace parallax::tools {
 
-/// A fact that one revision has and another has not, or one that stands for another.
+/// A fact of one revision that the other lacks, or one that replaces another.
 struct Edit {
   std::optional<std::size_t> kept;     // of the revision that has the trace
   std::optional<std::size_t> refused;  // of the revision that has it not
 };
 
-/// Of all edits the most that are tried out; each costs a compilation.
+/// Limit on edits in the search for responsible ones; each tried one costs a compilation.
 inline constexpr std::size_t kMaxTriedEdits = 24;
 
 /// A minimal set of edits such that the revision without the trace has it when these are undone and
-/// all others stay ("sufficient" in the sense of Maoz and Ringert 2018: and no smaller part of the
-/// set is). Found by undoing all and making them again one by one, as long as that takes any away;
-/// parts of a small set are tried all. A variant that is no right model counts as one without the
+/// all others stay ("sufficient" in the sense of Maoz and Ringert 2018, and no proper subset is).
+/// Found by undoing all and restoring them one by one, as long as any can be restored; the subsets
+/// of a small set are all tried. A variant that is not a valid model counts as one without the
 /// trace. None if there are more than kMaxTriedEdits.
 std::optional<std::vector<Edit>> responsible_edits(const std::vector<compiler::Fact>& kept,
                                                    const std::vector<compiler::Fact>& refused,
@@ -33,7 +33,7 @@ std::optional<std::vector<Edit>> responsible_edits(const std::vector<compiler::F
                                                    const runtime::SharedVocabulary& vocabulary,
                                                    const ModelOptions& options, Context& context);
 
-/// Two lists of facts and what they have not in common; outlived by the lists.
+/// Two lists of facts and their differences; the lists outlive it.
 struct FactReport {
   const std::vector<compiler::Fact>& old_facts;
   const std::vector<compiler::Fact>& new_facts;
@@ -61,16 +61,16 @@ struct ModelDiffOptions {
   std::size_t list_limit = 200;
 };
 
-/// All that is known of the difference of two models.
+/// Everything that is known of the difference of two models.
 struct ModelDifference {
   ModelRevision old_side, new_side;
-  /// As far as each goes by itself, where traces are compared: up to the smaller one.
+  /// The horizons of both sides; traces are compared up to the smaller one.
   compiler::Timepoint old_horizon = 0, new_horizon = 0;
   compiler::FactDifference facts;
-  /// Of two scenarios, where facts are compared.
+  /// Differences of the settings, where two scenarios and their facts are compared.
   std::optional<std::vector<SettingChange>> settings;
   std::optional<runtime::TraceDifference> traces;
-  /// What the witnesses depend on; none where it was not tried.
+  /// The edits that the witnesses depend on; none where it was not tried.
   std::optional<std::vector<Edit>> lost_edits, gained_edits;
   std::vector<std::string> remarks;  // what was not compared, and why
 

@@ -10,7 +10,7 @@
 
 namespace parallax::tools {
 
-/// What `parallax rates --json` found of one trace.
+/// The rates that `parallax rates --json` found for one trace.
 struct RevisionRates {
   std::string events;
   harness::RateCounts any;
@@ -31,10 +31,10 @@ struct RatesRevision {
   std::vector<RevisionRates> traces;
 };
 
-/// Reports kNoRatesResult for a file that is none, or whose counts contradict each other.
+/// Reports kNoRatesResult for a file without rates, or whose counts contradict each other.
 base::Result<RatesRevision> load_rates(const std::string& path, Context& context);
 
-/// What they say: what was counted as declarations, the counts as axioms.
+/// The rates as facts: what was counted as declarations, the counts as axioms.
 std::vector<compiler::Fact> rates_facts(const RatesRevision& rates);
 
 }  // namespace parallax::tools

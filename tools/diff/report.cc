@@ -92,7 +92,7 @@ std::string some(const std::vector<std::string>& names) {
   return out;
 }
 
-/// The trace up to the timepoint that rules it out; what happens there is beyond it.
+/// The trace up to the timepoint that rules it out; later events are left out.
 runtime::Trace beginning(const runtime::Witness& witness) {
   auto trace = witness.trace;
   trace.points.resize(static_cast<std::size_t>(witness.excluded_by) + 1);

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using compiler::Fact;
 using compiler::FactKind;
 
-/// The facts of model texts that are known to be right: what could be said of them has been said.
+/// The facts of model texts that are known to be valid: everything about them was reported before.
 void add_text_facts(const std::vector<std::string>& models, const compiler::LoadOptions& load,
                     std::vector<Fact>& facts) {
   base::SourceFiles files;
@@ -63,7 +63,7 @@ base::Result<ModelRevision> load_compiled(const std::string& path, const LoadRev
   return out;
 }
 
-/// What a world that is a model says, each fact marked as the world's. It has no part in the
+/// Adds the facts of a world that is a model, each marked as the world's. They have no part in the
 /// traces.
 void add_world_facts(const harness::Scenario& scenario, const compiler::LoadOptions& load,
                      std::vector<Fact>& facts) {

@@ -24,7 +24,7 @@ enum class RevisionKind : std::uint8_t {
   kRates,     // .json: what `parallax rates --json` prints
 };
 
-/// What the name of a file or folder says that it is; none for other names.
+/// Kind of a revision by the name of its file or folder; none for other names.
 std::optional<RevisionKind> kind_of(const std::string& path);
 /// Models, compiled models and scenarios can be compared with one another.
 bool has_traces(RevisionKind kind);
@@ -34,7 +34,7 @@ struct ModelRevision {
   std::string name;  // as the user wrote it
   RevisionKind kind = RevisionKind::kModel;
   std::vector<compiler::Fact> facts;
-  /// Of a scenario: everything else that it says.
+  /// All further settings of a scenario.
   std::optional<harness::ScenarioSettings> settings = std::nullopt;
   std::optional<compiler::CompiledModel> compiled = std::nullopt;  // if traces are compared
   /// The facts are those of texts, so that a variant can be written from them and compiled.

@@ -31,7 +31,7 @@ class Side {
     const auto at = first_from(path);
     return at != all_.end() && at->path == path ? &*at : nullptr;
   }
-  /// Does the scenario say anything at the path or below it?
+  /// Does the scenario have a key at the path or below it?
   bool says_below(const Path& top) const {
     for (auto at = first_from(top); at != all_.end() && is_below(at->path, top); ++at) {
       if (at->given) return true;
@@ -101,12 +101,12 @@ class Comparison {
     put(change, *after, false);
   }
 
-  /// The other side does not even have the map in which the reader would have looked for the key.
+  /// The other side lacks even the map in which the key would be.
   void one_sided(const Setting& setting, bool is_old) {
     const auto& other = is_old ? new_ : old_;
     if (!setting.given || setting.is_default()) return;
     if (setting.value == kPresent && other.says_below(setting.path)) return;
-    // The highest key that the other side has not, if it stands for more than this one value.
+    // The highest key that the other side lacks, if it stands for more than this one value.
     Path top = setting.path;
     while (top.size() > 1) {
       const Path higher(top.begin(), top.end() - 1);

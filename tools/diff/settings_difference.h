@@ -8,19 +8,19 @@
 
 namespace parallax::tools {
 
-/// A value that two scenarios do not have in common, or all values below a key that one alone has.
+/// A value that differs between two scenarios, or all values below a key that only one has.
 struct SettingChange {
   std::vector<std::string> path;
   std::string before, after;  // one line; where a side has nothing, empty
-  /// The side says nothing, and the value shown is what is taken then.
+  /// The side has no such key; the value shown is the default.
   bool before_is_default = false, after_is_default = false;
   std::string old_file, new_file;  // where it stands; empty: nowhere
   std::uint32_t old_line = 0, new_line = 0;
   std::vector<harness::Effect> effects;
 };
 
-/// The changes in the order of the paths. A key that is left out is compared as its default; what
-/// a side alone has is one change for the highest key that the other has not.
+/// The changes in the order of the paths. A missing key is compared by its default; keys that only
+/// one side has are one change for the highest of them.
 std::vector<SettingChange> compare_settings(const harness::ScenarioSettings& before,
                                             const harness::ScenarioSettings& after);
 

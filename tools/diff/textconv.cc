@@ -121,7 +121,7 @@ class ReportReader {
   std::vector<Fact> facts_;
 };
 
-/// Of which texts the run was: scenario, models and plan by their hash, which the journal has.
+/// The hash of the run's scenario, models and plan, from its journal.
 std::optional<Fact> texts_fact(const fs::path& folder) {
   base::DiagnosticSink unread;
   const auto journal = base::read_file_of(folder, harness::kJournalName, unread);

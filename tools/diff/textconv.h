@@ -12,9 +12,9 @@ namespace parallax::tools {
 /// `verdict` and `traces`.
 base::Result<std::string> load_run_report(const std::string& path, Context& context);
 
-/// What the report of a run says: its settings as declarations; its verdict, and for every trace
-/// its verdict and its discrepancies, as axioms. A trace is known by its events and its initial
-/// state. `path` is a run folder or a report.json (E7111).
+/// The report of a run as facts: its settings as declarations; its verdict, and for every trace its
+/// verdict and its discrepancies, as axioms. A trace is known by its events and its initial state.
+/// `path` is a run folder or a report.json (E7111).
 base::Result<std::vector<compiler::Fact>> load_run_facts(const std::string& path, Context& context);
 
 /// The canonical text of one file: one fact a line, sorted, for goldens and `git diff`. Models (.e)

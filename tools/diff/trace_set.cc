@@ -13,7 +13,7 @@
 namespace parallax::tools {
 namespace {
 
-/// What happens before a timepoint, what holds at it: by name, because two files are compared.
+/// The events before a timepoint and the fluents at it: by name, because two files are compared.
 using Step = std::pair<runtime::Names, runtime::Names>;
 
 /// A trace as it was told, with ids of `symbols`. What it does not list is false.
@@ -46,7 +46,7 @@ std::vector<Step> steps_of(const runtime::Trace& trace) {
   return steps;
 }
 
-/// The beginnings of all traces of a set.
+/// All prefixes of the traces of a set.
 class PrefixTree {
  public:
   explicit PrefixTree(const TraceSet& set) {
@@ -63,8 +63,8 @@ class PrefixTree {
     }
   }
 
-  /// The first timepoint at which the trace is none of these; none if it is one of them. A trace
-  /// that only ends elsewhere leaves them at its last timepoint.
+  /// The first timepoint at which the trace differs from all of these; none if it is one of them. A
+  /// trace that only ends elsewhere leaves them at its last timepoint.
   std::optional<std::int64_t> leaves_at(const runtime::Trace& trace) const {
     std::size_t node = 0;
     std::int64_t t = 0;

@@ -18,7 +18,7 @@ struct TraceSet {
 };
 
 /// Reads lines of `parallax traces --format jsonl`, or ITF, as `traces --replay` does (E6101,
-/// E6102), but for the names, which no model says. Linear in the file.
+/// E6102), except that no model declares the names. Linear in the file.
 base::Result<TraceSet> load_trace_set(const std::string& path, Context& context);
 
 /// The traces with changes only, sorted, and what is known of the list.

@@ -7,7 +7,7 @@
 
 namespace parallax::tools {
 
-/// Does something that the program stands on work here? Each is tried, not looked up.
+/// Trial of something that the program depends on. Each is tried, not looked up.
 enum class Health : std::uint8_t {
   kWorks,
   kBroken,    // it is there, or has to be, and does not do what it should
@@ -18,7 +18,7 @@ enum class Health : std::uint8_t {
 struct CheckUp {
   std::string name;
   Health health = Health::kNotTried;
-  std::string found = {};    // what was tried and what came of it
+  std::string found = {};    // the trial and its result
   std::string remedy = {};   // unless it works: what to do; may be empty
   std::string package = {};  // Debian's, where one would help
   bool is_needed = true;     // without it the program does not do its work

@@ -30,7 +30,7 @@ constexpr const char* kLamp =
 constexpr std::int64_t kLampTraces = 8;
 constexpr std::int64_t kSimulations = 2;
 
-/// -1 for what is none.
+/// -1 if it is malformed.
 template <typename Json>
 std::int64_t whole_number(const Json* value) {
   return value == nullptr ? -1 : base::json_as<std::int64_t>(*value).value_or(-1);

@@ -37,7 +37,7 @@ base::Result<Place> place_of(const std::string& scenario, base::DiagnosticSink& 
   std::error_code error;
   auto folder = fs::absolute(scenario, error).lexically_normal().parent_path();
   fs::path rest = fs::path(scenario).filename();
-  // It may be gone from the checkout by now, with its folder.
+  // The file may have been removed from the checkout since, with its folder.
   while (!fs::is_directory(folder, error) && folder.has_relative_path()) {
     rest = folder.filename() / rest;
     folder = folder.parent_path();
@@ -70,7 +70,7 @@ base::Result<std::string> commit_of(const Place& place, const std::string& revis
   return *hash;
 }
 
-/// What git says first of why it failed.
+/// The first line of git's error message.
 std::string complaint(const base::Captured& git) {
   if (git.code < 0 || git.code == 127) return "git cannot be started";
   auto text = git.err.empty() ? git.out : git.err;
@@ -226,13 +226,13 @@ class Bisection {
         run.code == 4 ? "inconclusive" : fmt::format("the run ended with exit code {}", run.code);
   }
 
-  /// `git bisect`, told one revision after the other.
+  /// `git bisect`, given the verdicts one revision after the other.
   base::Status search(const std::string& before, const std::string& after) {
     std::vector<std::string> start = {"bisect", "start"};
     if (options_.first_parent) start.emplace_back("--first-parent");
     start.insert(start.end(), {after, before});
     auto answer = run_git(repository_->path(), start);
-    // Each revision is told once, so that this ends.
+    // Each revision is given once, so this ends.
     while (answer.code == 0 && !stopped()) {
       // Subjects of commits stand in other lines, and may say anything.
       const auto line = answer.out.substr(0, answer.out.find('\n'));
@@ -279,7 +279,7 @@ class Bisection {
     return base::Unit{};
   }
 
-  /// What the revision changed in what the scenario says.
+  /// Compares the scenario before and after the revision.
   void compare(const std::string& revision) {
     const std::vector<std::pair<std::string, std::string>> sides = {{"before", revision + "^1"},
                                                                     {"after", revision}};

@@ -20,7 +20,7 @@ struct BisectOptions {
   bool first_parent = false;
 };
 
-/// What came of the scenario at one revision.
+/// Result of the scenario at one revision.
 struct RevisionVerdict {
   std::string revision;  // its full hash
   std::string subject;
@@ -31,7 +31,7 @@ struct RevisionVerdict {
 
 struct BisectResult {
   RevisionVerdict old_end, new_end;
-  /// Those between them that were tried, in order.
+  /// The revisions between them that were tried, in order.
   std::vector<RevisionVerdict> tried;
   /// The revision that changed the verdict; several where only skipped ones are left between the
   /// two verdicts; none if the verdicts of the ends are equal, or one of them has none.
@@ -43,11 +43,11 @@ struct BisectResult {
   bool ends_have_verdicts() const { return !old_end.verdict.empty() && !new_end.verdict.empty(); }
 };
 
-/// Looks for the revision that changed the verdict of a scenario with `git bisect`, in a repository
-/// of its own in a temporary folder, which borrows the objects of the user's: that one, its
-/// checkout and its refs are only read, and none of its hooks, filters and settings count. Each
-/// revision is run in a process of its own. Reports what git does not know as kUsage. `tell` hears
-/// of each revision that was tried.
+/// Finds the revision that changed the verdict of a scenario with `git bisect`, in a temporary
+/// repository, which borrows the objects of the user's. The user's repository, its checkout and its
+/// refs are only read, and none of its hooks, filters and settings are used. Each revision is run
+/// in a process of its own. Reports unknown revisions as kUsage. `tell` is called for each revision
+/// that was tried.
 base::Result<BisectResult> bisect_verdict(const BisectOptions& options,
                                           const std::function<void(const RevisionVerdict&)>& tell,
                                           const std::atomic<bool>& stop,

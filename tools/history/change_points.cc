@@ -24,7 +24,7 @@ bool says_something(const HistoryCase& one) {
   return one.outcome != "not finished" && one.outcome != "skipped";
 }
 
-/// What else changed with it.
+/// Names other changes between the two results.
 std::string reason_words(const HistoryLine& old_line, const HistoryCase& before,
                          const HistoryLine& new_line, const HistoryCase& after) {
   if (before.files.empty() || after.files.empty()) return {};
@@ -56,7 +56,7 @@ const MeasuredRate* find_rate(const HistoryCase& one, const std::string& of) {
   return at == one.rates.end() ? nullptr : &*at;
 }
 
-/// A cause that was not seen came in none of the runs of its trace.
+/// A cause that was not seen has count 0 in all runs of its trace.
 std::optional<MeasuredRate> rate_or_none(const HistoryCase& one, const std::string& of) {
   if (const auto* rate = find_rate(one, of)) return *rate;
   const auto any = of.substr(0, of.find(": ")) + ": any discrepancy";
@@ -118,8 +118,9 @@ class CaseHistory {
     return out;
   }
 
-  /// Adds to each line the comparisons that it makes: of rates known by then that are measured in
-  /// it and before it. What later lines bring has no part in it, so what was named stays named.
+  /// Adds to each line the comparisons that it makes: of the rates known so far that are measured
+  /// both in it and before it. Later lines have no influence, so a change that was named stays
+  /// named.
   void count_comparisons(std::vector<std::size_t>& by_line) const {
     for (const auto& [of, known_at] : rate_names()) {
       const auto lines = measured(of);

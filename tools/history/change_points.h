@@ -9,7 +9,7 @@
 
 namespace parallax::tools {
 
-/// Where something changed in the history of one suite.
+/// A change in the history of one suite.
 struct ChangePoint {
   enum class Kind : std::uint8_t {
     kOutcome,  // outcome or verdict of a case
@@ -23,7 +23,7 @@ struct ChangePoint {
   double p_value = 0.0;  // kRate: adjusted for all comparisons and looks
 };
 
-/// With which changes of rates are named.
+/// Confidence with which changes of rates are named.
 inline constexpr double kHistoryConfidence = 0.95;
 
 struct Changes {
@@ -32,12 +32,12 @@ struct Changes {
   double confidence = kHistoryConfidence;
 };
 
-/// The changes in the lines of one suite, `suite` being indices into the history. Rates are held
-/// against the first measurement since their last change by Fisher's exact test of two sides. Each
-/// line is a look, and look k spends 6/(pi^2 k^2) of the error (SpendingRule), shared equally by
-/// the rates that were known by then. So the probability that any change is ever named although
-/// none happened is at most 1 - confidence, however long the history grows, and a change that was
-/// named stays named. Lost runs count for whichever answer is less remarkable.
+/// The changes in the lines of one suite, `suite` being indices into the history. Rates are
+/// compared with the first measurement since their last change by Fisher's two-sided exact test.
+/// Each line is a look, and look k spends 6/(pi^2 k^2) of the error (SpendingRule), shared equally
+/// by the rates that are known then. So the probability that any change is ever named although none
+/// happened is at most 1 - confidence, however long the history grows, and a change that was named
+/// stays named. Lost runs count as the less remarkable answer.
 Changes find_changes(const History& history, const std::vector<std::size_t>& suite,
                      double confidence);
 

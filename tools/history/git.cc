@@ -17,7 +17,7 @@ base::Captured run_git(const std::string& folder, const std::vector<std::string>
   }
   command.insert(command.end(), {"LC_ALL=C", "GIT_TERMINAL_PROMPT=0", "GIT_NO_LAZY_FETCH=1",
                                  "GIT_OPTIONAL_LOCKS=0"});
-  // By the environment, because a setting's name may hold a `=`.
+  // Passed in the environment, because a setting's name may contain a `=`.
   for (std::size_t i = 0; i < emptied.size(); ++i) {
     const auto number = std::to_string(i);
     command.insert(command.end(), {"GIT_CONFIG_KEY_" + number + "=" + emptied[i],
@@ -70,7 +70,7 @@ std::optional<std::vector<std::string>> filters_of(const std::string& folder) {
   return out;
 }
 
-/// None: git does not say.
+/// None: git does not tell.
 std::optional<bool> has_changes(const std::string& top, const std::set<std::string>& files) {
   const auto filters = filters_of(top);
   if (!filters) return std::nullopt;
@@ -99,7 +99,7 @@ std::optional<bool> has_changes(const std::string& top, const std::set<std::stri
     if (!status.out.empty()) return true;
     tracked += std::count(list.out.begin(), list.out.end(), '\0');
   }
-  // Of files in a submodule it says nothing.
+  // git lists no files of a submodule: their state is unknown.
   if (tracked < expected) return std::nullopt;
   return false;
 }

@@ -11,7 +11,7 @@ namespace parallax::tools {
 
 /// Runs `git ARGUMENTS...` in a folder. Nothing that the repository there names is executed: no
 /// hook, no monitor of its files, no signature program, no pager, none of `emptied`, and nothing is
-/// fetched. What the environment says of another repository does not count.
+/// fetched. Environment variables that name another repository are ignored.
 base::Captured run_git(const std::string& folder, const std::vector<std::string>& arguments,
                        const std::vector<std::string>& emptied = {});
 
@@ -23,9 +23,9 @@ std::optional<std::string> ask_git(const std::string& folder,
 /// repository, or there is no commit.
 std::optional<std::string> revision_at(const std::string& path);
 
-/// The same, with `+changes` behind it where one of these files, as far as they lie in that
-/// checkout, is not as the commit has it, and `+unknown` where git does not say. The repository's
-/// own filters do not run: a file that needs one counts as changed once it was touched.
+/// The same, followed by `+changes` where one of these files, as far as they lie in that checkout,
+/// differs from the commit, and by `+unknown` where git does not tell. The repository's own filters
+/// do not run: a file that needs one counts as changed once it was touched.
 std::optional<std::string> revision_of(const std::string& path, const std::set<std::string>& files);
 
 }  // namespace parallax::tools

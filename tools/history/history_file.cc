@@ -39,7 +39,7 @@ ordered_json rate_json(const MeasuredRate& rate) {
   return out;
 }
 
-/// None if the counts are none.
+/// None if the counts are malformed.
 std::optional<MeasuredRate> rate_of(const json& object) {
   constexpr std::int64_t kMostRuns = 1'000'000'000;
   MeasuredRate out;
@@ -184,7 +184,7 @@ base::Result<History> read_history(const std::filesystem::path& path, base::Diag
     const auto line = std::string_view(*text).substr(at, end - at);
     ++number;
     at = end + 1;
-    // A line without its end may be read, and be wrong: half of a number is a number.
+    // A line without its end may be readable and wrong: a prefix of a number is a number.
     if (newline == std::string::npos) {
       out.half_written = true;
     } else if (auto read = decode(line)) {

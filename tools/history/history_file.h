@@ -13,7 +13,7 @@
 
 namespace parallax::tools {
 
-/// How often something came in simulations of which the number was fixed.
+/// Number of occurrences in a fixed number of simulations.
 struct MeasuredRate {
   std::string of;  // "trace 1: any discrepancy", "trace 1: Place(r1): not BoxIn(r1)"
   std::int64_t count = 0, runs = 0;
@@ -34,11 +34,11 @@ struct HistoryCase {
 /// One suite, as a line of a history tells it.
 struct HistoryLine {
   std::string revision;  // as the user or git calls it; may be empty
-  // What makes it the same suite as another.
+  // These identify the suite.
   std::vector<std::string> paths;
   std::string only;
   bool fast = false;
-  // What it was run with.
+  // These tell how it was run.
   std::uint64_t seed = 1;
   std::string version, program;
   std::map<std::string, HistoryCase> cases;  // by name
@@ -49,31 +49,30 @@ struct HistoryLine {
   std::string suite_text() const;
 };
 
-/// A history as it was read, and what could not be read of it.
+/// A history as read, and the lines that could not be read.
 struct History {
   std::vector<HistoryLine> lines;
   std::vector<std::size_t> numbers;     // of these lines in the file, from 1
-  std::vector<std::size_t> unreadable;  // numbers of lines that are none of ours
+  std::vector<std::size_t> unreadable;  // numbers of lines in another format
   bool half_written = false;            // the last one has no end
 };
 
 std::string encode(const HistoryLine& line);
 
-/// Rates as a JSON array, and back; what is no rate is left out.
+/// Rates as a JSON array, and back; malformed rates are left out.
 std::string encode_rates(const std::vector<MeasuredRate>& rates);
 std::vector<MeasuredRate> decode_rates(std::string_view text);
 
-/// Reads a history of suites. A line that was half written, or is of somebody else, is passed over
-/// and noted. Reports a file without a line of ours that is not empty.
+/// Reads a history of suites. A line that is half written, or in another format, is skipped and
+/// noted. Reports a file that is not empty and has no line of a history.
 base::Result<History> read_history(const std::filesystem::path& path, base::DiagnosticSink& sink);
 
-/// Appends one line, as one write under a lock, so that suites may do so at the same time. Behind
-/// a line that was half written it begins a new one. Makes the file if there is none; a link is not
-/// followed.
+/// Appends one line, as one write under a lock, so that suites may do so at the same time. After a
+/// half-written line it begins a new one. Makes the file if there is none; a link is not followed.
 base::Status append_history(const std::filesystem::path& path, const HistoryLine& line,
                             base::DiagnosticSink& sink);
 
-/// What is wrong with the file, a sentence each; empty if all of it was read.
+/// Problems of the file, a sentence each; empty if all of it was read.
 std::vector<std::string> remarks_on(const History& history, const std::string& path);
 
 /// The suites that a history has, in order of their first lines, each as indices of its lines.

@@ -10,7 +10,7 @@
 
 namespace parallax::tools {
 
-/// Gives traces until a number of simulations is used up. What it is made of outlives it.
+/// Gives traces until a number of simulations is used up. Its constructor arguments outlive it.
 class BoundedTraces final : public harness::TraceFeed {
  public:
   BoundedTraces(EnumeratedTraces& traces, const std::int64_t& made, std::int64_t most)

@@ -83,7 +83,7 @@ std::optional<StateFormula::Definition> definition_of(const Ast& ast, NodeId bod
     if (std::find(others.begin(), others.end(), name) != others.end()) return std::nullopt;
     out.arguments.push_back(name);
   }
-  // Whatever else is quantified in front would be so for each half by itself.
+  // Other variables quantified in front would be quantified in each half separately.
   if (out.arguments.size() + 1 != formula.variables.size()) return std::nullopt;
   out.left = compiler::print_formula(ast, ast.child(root, 0));
   out.right = compiler::print_formula(ast, ast.child(root, 1));

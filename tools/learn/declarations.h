@@ -28,7 +28,7 @@ struct StateFormula {
   std::string quantifier() const;
 };
 
-/// What a model says without a word about what events do and when they happen.
+/// The part of a model that does not tell what events do and when they happen.
 struct Declarations {
   /// A declaration, a formula about predicates, or one about states.
   struct Piece {

@@ -20,8 +20,8 @@ namespace {
 
 constexpr double kUnexplained = 60.0;  // bits: what no rule says
 
-/// What keeps an effect out of where an outcome is left open, in the words of the effect; none if
-/// that takes more than one condition.
+/// The condition that keeps an effect from applying where an outcome is open, in the variables of
+/// the effect; none if that takes more than one condition.
 std::optional<RuleUnit> guard_against(const LearnedRule& opening, const LearnedRule& effect,
                                       std::size_t event_arguments) {
   if (opening.units.size() != 1) return std::nullopt;
@@ -44,7 +44,7 @@ std::optional<RuleUnit> guard_against(const LearnedRule& opening, const LearnedR
   return out;
 }
 
-/// Effects are for where no outcome is left open.
+/// Effects apply where no outcome is left open.
 void keep_apart(const std::vector<LearnedRule>& openings, std::size_t event_arguments,
                 LearnedRule& effect) {
   for (const auto& opening : openings) {
@@ -120,7 +120,7 @@ class EffectLearner {
     std::move(answer.rules.begin(), answer.rules.end(), std::back_inserter(out_.rules));
   }
 
-  /// What was seen behind one state and one event, of one fluent.
+  /// The observed result of one event in one state, for one fluent.
   struct Outcome {
     RuleExample example;
     Truth before = Truth::kUnknown;
@@ -128,7 +128,7 @@ class EffectLearner {
     std::size_t opening = 0;  // place in the problem of openings
   };
 
-  /// Every outcome that was seen, and the same by state for find_openings.
+  /// Every observed outcome, and the same by state for find_openings.
   std::vector<Outcome> outcomes(std::size_t fluent, OpeningProblem& problem) const {
     std::vector<Outcome> out;
     for (std::size_t k = 0; k < vocabulary_.atoms().size(); ++k) {
@@ -155,11 +155,11 @@ class EffectLearner {
     return out;
   }
 
-  /// What the rules say that were found for one event and fluent.
+  /// The rules that were found for one event and fluent.
   struct Account {
     std::vector<LearnedRule> openings, effects;
     std::vector<RuleExample> unexplained;
-    /// As long as it takes to tell the rules, and what they leave open.
+    /// Description length of the rules, and of the outcomes that they leave open.
     double length = 0.0;
   };
 
@@ -186,7 +186,7 @@ class EffectLearner {
       }
       const bool holds = one.after == Truth::kTrue;
       (holds ? ends : begins).against.push_back(one.example);
-      // What no one observes was not so before, as far as anyone knows.
+      // A fluent known only from outcomes counts as changed if its value before is unknown.
       const bool changed = one.before == (holds ? Truth::kFalse : Truth::kTrue) ||
                            (told && one.before == Truth::kUnknown);
       if (changed) (holds ? begins : ends).shown.push_back(one.example);
@@ -207,8 +207,8 @@ class EffectLearner {
     return out;
   }
 
-  /// The shortest account: how much of what went one way each time is chance as well, and how much
-  /// other rules explain, shows when both are told.
+  /// The account with the shortest description. It decides how many of the outcomes that went one
+  /// way each time are chance as well, and how many other rules explain.
   Account best_account(OpeningProblem& problem, const std::vector<Outcome>& seen) const {
     std::optional<Account> best;
     std::set<std::string> known;
@@ -225,8 +225,8 @@ class EffectLearner {
     return narrowed(problem, seen, *std::move(best));
   }
 
-  /// Openings are found one after the other, and before the effects beside them: with both at hand
-  /// a longer condition may make the whole shorter.
+  /// Tries narrower openings. They were found one after the other, and before the effects: with
+  /// both known, a longer condition may shorten the whole description.
   Account narrowed(const OpeningProblem& problem, const std::vector<Outcome>& seen,
                    Account best) const {
     for (bool shorter = true; shorter && !stop_.load();) {
@@ -256,7 +256,7 @@ class EffectLearner {
     tell_open(fluent, seen, problem);
     while (!stop_.load()) {
       auto found = best_account(problem, seen);
-      // What no rule explains is left open, too.
+      // Outcomes that no rule explains are left open, too.
       bool all = true;
       for (const auto& example : found.unexplained) {
         const auto one = std::find_if(seen.begin(), seen.end(),
@@ -276,8 +276,8 @@ class EffectLearner {
     return {};
   }
 
-  /// Outcomes that one chance decides. Where the chance of one is another's, and nothing shows
-  /// more of it to be open, it is open where the other one is.
+  /// Ties outcomes that one chance decides. Where one outcome follows another, and nothing shows
+  /// that more of it is open, it is left open only where the other one is.
   void learn_ties(std::vector<FluentAccount>& fluents) {
     for (bool narrowed = true; narrowed && !stop_.load();) {
       narrowed = false;
@@ -321,7 +321,7 @@ class EffectLearner {
     return vocabulary_.atoms()[*vocabulary_.atom(fluent, example.arguments)].name;
   }
 
-  /// Once for each event and fluent, with a run of either kind.
+  /// Named once for each event and fluent, with a run of either kind.
   void tell_open(std::size_t fluent, const std::vector<Outcome>& seen,
                  const OpeningProblem& problem) {
     std::map<std::pair<std::string, std::string>, std::map<Truth, std::string>> told;

@@ -19,10 +19,10 @@ using harness::CampaignTrace;
 
 namespace {
 
-constexpr std::uint64_t kRandomEvents = 6;  // at most so many in a row
+constexpr std::uint64_t kRandomEvents = 6;  // limit on random events in a row
 constexpr std::size_t kMostEvents = 2000;   // to choose from
 
-/// Traces are made here; nobody asks for the next one.
+/// Traces are made here, so nobody asks for the next one.
 class NoTraces final : public harness::TraceFeed {
  public:
   explicit NoTraces(runtime::Symbols symbols) : symbols_(std::move(symbols)) {}
@@ -120,7 +120,7 @@ class SequenceExplorer {
     return trace;
   }
 
-  /// Can the event be asked for with what the plan says of it, or with nothing?
+  /// Can the event be performed with the plan's arguments, or without any?
   bool can_be_called(const harness::PlannedPerform& perform) const {
     const auto event = symbols_->event(perform.event);
     if (!event) return false;
@@ -157,7 +157,7 @@ class SequenceExplorer {
     return std::min(drawn, count - 1);
   }
 
-  /// The way that a sequence takes: perhaps that of a run for a while, then at random.
+  /// A sequence of events: perhaps the beginning of an earlier run, then at random.
   std::vector<const harness::PlannedPerform*> sequence(const harness::CounterRng& random,
                                                        std::int64_t number) const {
     std::vector<const harness::PlannedPerform*> out;
@@ -205,7 +205,7 @@ class SequenceExplorer {
   }
 
   void simulate(std::int64_t number, harness::TrialBench& bench, harness::Journal& journal) {
-    // What one sequence cannot do is no reason to end.
+    // A sequence that cannot be simulated does not end the exploration.
     const auto before = context_.sink();
     auto trial = harness::Trial::prepare(bench, trace(number));
     if (trial) {

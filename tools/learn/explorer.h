@@ -29,11 +29,11 @@ struct Explored {
   std::vector<std::string> skipped;  // sequences that could not be simulated, and why
 };
 
-/// Simulates random sequences of events, each once, and records them in a run folder. Events are
-/// those that the plan performs, with what the plan says of them, and the same with other arguments
-/// where the scenario's action needs nothing of the plan. Every other sequence begins as one of
-/// `known` did, for a part of its way. `loaded` was loaded for closed loop. Reports what claiming
-/// the folder and starting the simulator report.
+/// Simulates random sequences of events, each once, and records them in a run folder. The events
+/// are those that the plan performs, with the plan's arguments, and the same with other arguments
+/// where the scenario's action needs nothing of the plan. Every other sequence begins with a part
+/// of one of `known`. `loaded` was loaded for closed loop. Reports what claiming the folder and
+/// starting the simulator report.
 base::Result<Explored> explore(const ScenarioModel& loaded, const std::vector<Evidence>& known,
                                const harness::SimulatorFactory& make_simulator,
                                const ExploreOptions& options, Context& context);

@@ -28,7 +28,8 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kBatch = 10;  // sequences between two models
 constexpr std::int64_t kMostLearningRounds = 400;
-/// What more clean rounds than these would sharpen is left as it is: they contradict nothing.
+/// Clean rounds after which the model is learned anew. Later ones contradict nothing and would only
+/// sharpen it.
 constexpr std::int64_t kSharpened = 1;
 
 class ScenarioLearner {
@@ -41,7 +42,7 @@ class ScenarioLearner {
 
   base::Result<LearnResult> run() {
     auto& sink = context_.sink();
-    // In the way that it asks for, then as it is executed: both must be possible.
+    // Loads it as it asks for, then for closed loop: both must be possible.
     auto own = load_scenario_run(options_.scenario, std::nullopt, context_);
     if (!own) return sink.already_reported();
     own_execution_ = own->scenario.execution;
@@ -85,7 +86,7 @@ class ScenarioLearner {
 
   void go() {
     if (options_.explore > 0) {
-      // One execution says what the plan does; then anything.
+      // One execution shows what the plan does; random sequences follow.
       if (!plan_round(1) || over()) return;
       while (result_.sequences < options_.explore && !over()) {
         if (!explore_round()) return;
@@ -151,7 +152,7 @@ class ScenarioLearner {
     if (!round) return std::nullopt;
     if (!round->loaded->compilation.model.has_constraints) return true;
     limit_runs(round->loaded->scenario, std::nullopt);
-    // How many traces there will be depends on the runs that they take.
+    // The number of traces depends on the runs that they take.
     round->loaded->scenario.criterion.family = harness::Family::kPerTrace;
     EnumeratedTraces all(round->loaded->compilation.model, *round->context);
     std::int64_t made = 0, done = 0, trace = 0;
@@ -221,7 +222,7 @@ class ScenarioLearner {
     return std::nullopt;
   }
 
-  /// A run that ended with an error; what it has on record counts all the same.
+  /// The run ended with an error; its records count all the same.
   std::optional<bool> failed(OpenRound& round) {
     const auto why = first_error(round.context->sink());
     std::error_code error;
@@ -281,7 +282,7 @@ class ScenarioLearner {
     result_.rounds.push_back(round.told);
   }
 
-  // --- what was seen
+  // --- observations
 
   /// Learns from the simulations of a round; false if they have changed nothing.
   bool take(const OpenRound& round, bool learns = true) {
@@ -311,7 +312,7 @@ class ScenarioLearner {
     result_.contradictions = taught_->contradictions();
     result_.refuted = taught_->refuted();
     result_.not_learnable = taught_->not_learned();
-    // Whoever has stopped it does not wait for the runs to be held against the model.
+    // After a stop, the runs are not checked against the model any more.
     const auto check = context_.stopped() ? RunsCheck() : taught_->check(taught_->runs());
     result_.runs = check.runs;
     result_.admitted = check.admitted;

@@ -28,7 +28,7 @@ struct LearnOptions {
   std::function<void(const harness::CampaignProgress&)> progress;
 };
 
-/// One run of what was learned so far, and what came of it.
+/// One run with the model learned so far, and its result.
 struct LearnRound {
   enum class Kind : std::uint8_t { kPlan, kTraces, kSequences };
   std::int64_t number = 0;
@@ -46,26 +46,26 @@ struct LearnResult {
   std::size_t dropped = 0;  // statements about events that the scenario's model had
   bool clean = false;       // the scenario's run ended without a discrepancy
   std::vector<std::string> claims;
-  /// The plan's executions were judged alone although the scenario simulates traces: the model
+  /// Only the plan's executions were judged although the scenario simulates traces: the model
   /// leaves outcomes open, and a trace is only one way that they can go.
   bool judged_in_closed_loop = false;
   std::vector<RefutedFormula> refuted;  // formulas about states that runs contradict
   std::string why;                      // it is not clean
   std::int64_t simulations = 0;         // in all, repetitions of discrepancies included
   std::int64_t sequences = 0;           // of them random ones
-  std::int64_t sequences_clean = 0;     // the last so many of them taught nothing
-  std::size_t runs = 0, admitted = 0;   // that were learned from; that the model admits
+  std::int64_t sequences_clean = 0;     // number of last ones that taught nothing
+  std::size_t runs = 0, admitted = 0;   // runs learned from; those that the model admits
   std::vector<LearnRound> rounds;
   std::vector<std::string> not_learnable, contradictions, remarks;
 };
 
 /// Learns what the events of the scenario's model do from runs alone: the model's own axioms about
-/// events are dropped before anything is simulated. The plan is executed with what is known, first
-/// with no effects at all; what goes otherwise gives another model, which admits every run so far;
-/// and so on until a run of the scenario is clean, the budget is used up or nothing more can be
-/// learned. Everything is in `out`: the model, a scenario with it, a log, and the rounds, each a
-/// run folder with its model. Reports what load_scenario_run reports. `make_simulator` is asked for
-/// worlds that are no model; it is given the scenario as it was loaded.
+/// events are dropped before anything is simulated. The plan is executed with the current model,
+/// first without any effects. Each deviation gives another model, which admits every run so far,
+/// until a run of the scenario is clean, the budget is used up or nothing more can be learned.
+/// Everything is written to `out`: the model, a scenario with it, a log, and the rounds, each a run
+/// folder with its model. Reports what load_scenario_run reports. `make_simulator` is asked for
+/// worlds that are not models; it is given the scenario as it was loaded.
 base::Result<LearnResult> learn(
     const LearnOptions& options,
     const std::function<base::Result<harness::SimulatorFactory>(const ScenarioModel&)>&

@@ -19,7 +19,7 @@ using runtime::SolveStatus;
 
 namespace {
 
-/// Asks a model without a plan whether it goes as a run went.
+/// Asks a model without a plan whether it admits the course of a run.
 class RunAdmission {
  public:
   RunAdmission(const compiler::CompiledModel& model, const std::set<std::string>& forbidden,
@@ -33,7 +33,7 @@ class RunAdmission {
     }
   }
 
-  /// The first timepoint that it cannot reach like that; none: it goes all the way.
+  /// The first timepoint that it cannot reach like that; none: it admits the whole run.
   std::optional<std::size_t> parting(const Evidence& run) {
     const auto last = run.steps.size();
     if (goes(run, last)) return std::nullopt;
@@ -72,7 +72,7 @@ class RunAdmission {
     const auto happens = index_.find(AtomKind::kHappens, step.event, t);
     if (!happens && !refused) return false;
     if (happens) facts.push_back(refused ? ~*happens : *happens);
-    // Of other events no more than what the model demands; in a trace there are none.
+    // Executed plans may have further events that the model demands; traces have none.
     for (const auto slot : run.executed ? undemanded_ : all_) {
       const auto literal = Literal::positive(session_.model().variable(slot, t));
       if (!happens || literal != *happens) facts.push_back(~literal);

@@ -10,9 +10,9 @@
 
 namespace parallax::tools {
 
-/// What says nothing about events (`states`), each rule with the runs that taught it, that nothing
-/// else changes what rules leave open, and the start, in the standard layout. `heading`: comment
-/// lines.
+/// The learned model in the standard layout: the statements without events (`states`), each rule
+/// with the runs that taught it, axioms that nothing else changes what rules leave open, and the
+/// start. `heading`: comment lines.
 std::string learned_text(const std::string& heading, const std::string& states,
                          const LearnedEffects& effects, const LearnVocabulary& vocabulary,
                          const std::string& start);
@@ -20,7 +20,7 @@ std::string learned_text(const std::string& heading, const std::string& states,
 /// "runs 1/1.1, 1/1.2, 2/1.1, 2/1.4 and 7 more"
 std::string named_runs(const std::vector<std::string>& runs);
 
-/// How a model stands to the runs that it was learned from, asked of the compiled text.
+/// Checks the compiled text of a model against the runs that it was learned from.
 struct RunsCheck {
   std::string wrong;  // the text is no right model
   std::size_t admitted = 0, runs = 0;

@@ -110,7 +110,7 @@ const std::vector<std::size_t>& LearnVocabulary::domain(compiler::SortId sort) c
 
 std::optional<std::size_t> LearnVocabulary::atom(std::size_t symbol,
                                                  const std::vector<std::size_t>& arguments) const {
-  // As they were made: the last argument changes first.
+  // In the order in which they are numbered: the last argument changes first.
   const auto& sorts = symbols_[symbol].sorts;
   std::size_t place = 0;
   for (std::size_t i = 0; i < sorts.size(); ++i) {
@@ -202,7 +202,7 @@ std::size_t Observations::number_of(const std::vector<Truth>& state) {
 
 std::optional<std::size_t> Observations::add(const Evidence& run) {
   std::optional<std::size_t> before;
-  // A trace says of its start what nobody sees; where it goes, only what is observed is known.
+  // The start is skipped: a trace gives all fluents there, also unobserved ones.
   for (std::size_t t = 1; t < run.states.size(); ++t) {
     for (const auto& [fluent, holds] : run.states[t]) {
       const auto atom = vocabulary_.atom_named(fluent);

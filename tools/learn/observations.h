@@ -19,8 +19,8 @@ namespace parallax::tools {
 
 enum class Truth : std::uint8_t { kFalse, kTrue, kUnknown };
 
-/// The words in which rules are looked for: fluents, predicates without time and events of a model,
-/// with the constants of their sorts, all by number.
+/// The vocabulary of rules: fluents, predicates without time and events of a model, with the
+/// constants of their sorts, all by number.
 class LearnVocabulary {
  public:
   struct Symbol {
@@ -66,14 +66,14 @@ class LearnVocabulary {
   std::vector<std::vector<std::int64_t>> places_;  // by sort, then constant: in the domain, or -1
 };
 
-/// Answers for one state what its axioms leave open or not: whether there is one that looks like
-/// that, and the fluents that are not observed but follow.
+/// Completes states by their axioms: whether a state with these values is possible, and the fluents
+/// that are not observed but follow.
 class StateCompletion {
  public:
   /// `model`: the declarations without a start; it outlives the object.
   StateCompletion(const compiler::CompiledModel& model, const LearnVocabulary& vocabulary,
                   const std::atomic<bool>& stop);
-  /// By atom. None: no state of the model looks like that.
+  /// By atom. None: no state of the model has these values.
   std::optional<std::vector<Truth>> complete(const Evidence::State& seen);
 
  private:
@@ -84,7 +84,7 @@ class StateCompletion {
   std::map<Evidence::State, std::optional<std::vector<Truth>>> known_;
 };
 
-/// One step that runs went, perhaps many times.
+/// One step of runs, perhaps seen many times.
 struct Transition {
   std::size_t before = 0, after = 0;  // states
   std::size_t event = 0;              // symbol
@@ -93,21 +93,21 @@ struct Transition {
   std::vector<std::string> runs;  // in the order in which they came
 };
 
-/// All steps that were seen, each once.
+/// All observed steps, each once.
 class Observations {
  public:
   Observations(const LearnVocabulary& vocabulary, StateCompletion& completion)
       : vocabulary_(vocabulary), completion_(completion) {}
 
-  /// Takes the steps of a run into account; those up to the first state that no state of the model
-  /// looks like. Gives its timepoint, if there is one.
+  /// Adds the steps of a run, up to the first state that no state of the model corresponds to.
+  /// Returns the timepoint of that state, if there is one.
   std::optional<std::size_t> add(const Evidence& run);
 
   const LearnVocabulary& vocabulary() const { return vocabulary_; }
   const std::vector<Transition>& transitions() const { return transitions_; }
   const std::vector<Truth>& state(std::size_t number) const { return states_[number]; }
   const std::vector<std::vector<Truth>>& states() const { return states_; }
-  /// Fluent symbols of which something was ever seen.
+  /// Fluent symbols that were observed at least once.
   const std::set<std::size_t>& observed() const { return observed_; }
 
  private:

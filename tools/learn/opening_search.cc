@@ -27,7 +27,7 @@ struct Counts {
     held += static_cast<double>(example.held);
     failed += static_cast<double>(example.failed);
   }
-  /// To tell of each which way it went, where nothing else is known.
+  /// Bits that tell which way each example went, without further knowledge.
   double bits() const { return bits_to_tell(held, failed); }
 };
 
@@ -132,7 +132,7 @@ class OpeningFinder {
       examples.push_back(&example);
     }
     const auto score = [&](int cost, const ExampleSet& sure, const ExampleSet& perhaps) {
-      // What is open and not covered takes another rule, of which no more is known.
+      // Open outcomes that are not covered need another rule, whose cost is not known yet.
       Counts inside, outside, left = elsewhere;
       for (std::size_t i = 0; i < instances.size(); ++i) {
         const bool needed = wanted_here.contains(i) && !sure.contains(i);
@@ -168,7 +168,7 @@ class OpeningFinder {
         if (truths[i] == Truth::kTrue) one.sure.insert(i);
         if (truths[i] != Truth::kFalse) one.perhaps.insert(i);
       }
-      // Of those that say the same of all that was seen the first is the shortest.
+      // Only the first of several units with the same values is kept: it is the shortest.
       const bool known =
           one.perhaps == all || std::any_of(rated.begin(), rated.end(), [&](const auto& other) {
             return other.perhaps == one.perhaps && other.sure == one.sure;

@@ -21,8 +21,8 @@ struct OpenOutcome {
   bool told = false;  // which way it went is told for an earlier rule, or follows from a tie
 };
 
-/// Outcomes of the rule `second` follow from those of `first`: the variables of the tie are the
-/// event's arguments, then others; which of them each rule's variables are.
+/// Outcomes of the rule `second` follow from those of `first`. The variables of the tie are the
+/// event's arguments, then others; `of_first` and `of_second` map each rule's variables to them.
 struct Tie {
   std::size_t first = 0, second = 0;
   std::vector<std::size_t> of_first, of_second;
@@ -48,7 +48,7 @@ class TieSearch {
   std::vector<OutcomeTie> find(const std::atomic<bool>& stop) {
     std::vector<OutcomeTie> out;
     std::vector<const Tie*> chosen;
-    // It takes as much to say which of them it is.
+    // The bits that it takes to name one of the candidates.
     const double cost = std::log2(static_cast<double>(candidates_.size() + 1)) + 1;
     std::vector<bool> possible(candidates_.size(), true);
     for (;;) {
@@ -145,7 +145,7 @@ class TieSearch {
     }
   }
 
-  /// What follows from it and is not told otherwise; none: a step contradicts it.
+  /// The outcomes that follow from the tie and are not told otherwise; none: a step contradicts it.
   std::optional<std::vector<OpenOutcome*>> decided_by(const Tie& tie) {
     std::vector<OpenOutcome*> out;
     for (std::size_t i = 0; i < steps_.size(); ++i) {
@@ -186,7 +186,7 @@ class TieSearch {
     return agree(tie.of_first, first.binding) && agree(tie.of_second, second.binding);
   }
 
-  /// Which way outcomes of the second rule went need not be told where it follows.
+  /// The bits saved because outcomes of the second rule that follow need not be described.
   std::optional<double> bits_saved(const Tie& tie) {
     const auto decided = decided_by(tie);
     if (!decided) return std::nullopt;
@@ -204,7 +204,7 @@ class TieSearch {
     return bits_to_tell(held, failed) - bits_to_tell(held_left, failed_left);
   }
 
-  /// Where a rule's variable is put for each of its own.
+  /// Maps a variable of a rule to its place.
   static RuleTerm moved(RuleTerm term, const std::vector<std::size_t>& places) {
     if (term.kind == RuleTerm::Kind::kHead) term.index = places[term.index];
     return term;
@@ -226,7 +226,7 @@ class TieSearch {
     }
   }
 
-  /// What is left of the rule's outcomes went one way each time.
+  /// Did the remaining outcomes of the rule go the same way each time?
   bool one_way(std::size_t rule) const {
     std::set<Truth> ways;
     for (const auto& step : outcomes_[rule]) {
@@ -237,8 +237,7 @@ class TieSearch {
     return ways.size() == 1;
   }
 
-  /// None: the first rule's conditions are about what the second one has no words for, or say
-  /// nothing new.
+  /// None: the first rule's conditions use variables that the second one lacks, or add nothing new.
   std::optional<LearnedRule> narrower(const Tie& tie) const {
     const auto& first = openings_[tie.first];
     auto out = openings_[tie.second];

@@ -41,7 +41,7 @@ std::optional<OpenRound> RoundFolder::begin(const LearnRound& told, std::string_
     why = "a file cannot be written";
     return std::nullopt;
   }
-  // What the user's scenario may name was asked when it was loaded.
+  // The names in the user's scenario were checked when it was loaded.
   auto form = context_->form();
   form.allow_outside = true;
   round.context = std::make_unique<Context>(form, context_->stop());
@@ -59,7 +59,7 @@ std::optional<OpenRound> RoundFolder::begin(const LearnRound& told, std::string_
 
 harness::CampaignOptions RoundFolder::campaign(const OpenRound& round) const {
   harness::CampaignOptions out;
-  // Other starts in every round: the same ones again would teach nothing.
+  // Every round uses other starts: the same ones would teach nothing.
   out.seed = options_->seed + static_cast<std::uint64_t>(round.told.number) - 1;
   out.jobs = options_->jobs;
   out.run_dir = round.folder / "run";

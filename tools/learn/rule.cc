@@ -190,7 +190,7 @@ Truth value_of(const RuleUnit& unit, const LearnVocabulary& vocabulary,
 std::vector<Truth> values_of(const RuleUnit& unit, const LearnVocabulary& vocabulary,
                              const std::vector<std::vector<Truth>>& states,
                              const std::vector<RuleInstance>& instances) {
-  // It is the same wherever the state is, and the variables of the head that it mentions.
+  // The value depends only on the state and on the head's variables that it mentions.
   std::vector<std::size_t> mentioned;
   for (const auto& literal : unit.literals) {
     for (const auto& term : literal.terms) {
@@ -249,7 +249,7 @@ std::string print_condition(const LearnedRule& rule, const LearnVocabulary& voca
 
 std::string print(const LearnedRule& rule, const LearnVocabulary& vocabulary) {
   const RuleNames names(rule, vocabulary);
-  // "There is one" in front of an implication is "for all" in front of the rule.
+  // An existential quantifier of an antecedent becomes a universal one in front of the rule.
   auto variables = names.head();
   std::string condition;
   for (std::size_t i = 0; i < rule.units.size(); ++i) {

@@ -28,7 +28,7 @@ struct RuleLiteral {
 };
 
 /// Part of a condition: there are values of the unit's own variables for which all its literals
-/// hold; or there are none.
+/// hold; negated: there are none.
 struct RuleUnit {
   bool negated = false;
   std::vector<RuleLiteral> literals;
@@ -38,7 +38,7 @@ struct RuleUnit {
 
 enum class RuleKind : std::uint8_t { kInitiates, kTerminates, kReleases, kForbids, kAdmits, kTies };
 
-/// An outcome that goes as another one goes, or against it.
+/// An outcome that is the same as another one, or the opposite.
 struct TiedFluent {
   std::size_t fluent = 0;
   std::vector<RuleTerm> terms;
@@ -90,7 +90,7 @@ Truth value_of(const std::vector<RuleUnit>& units, const LearnVocabulary& vocabu
 std::string print_condition(const LearnedRule& rule, const LearnVocabulary& vocabulary,
                             const std::vector<std::string>& head, const std::string& time);
 
-/// Bits that tell of each which way it went, where nothing else is known.
+/// Bits that tell which way each of them went, without further knowledge.
 double bits_to_tell(double held, double failed);
 
 /// As the language writes it, with its period.

@@ -7,14 +7,15 @@
 
 namespace parallax::tools {
 
-/// What a rule costs besides its conditions: as many bits as telling one takes, roughly.
+/// Cost of a rule besides its conditions: roughly the bits that it takes to write one down.
 constexpr int kRuleCost = 20;
-/// What a rule may cost more that makes others needless.
+/// Penalty for a rule that leaves examples to another one: up to it, a single dearer rule is
+/// preferred.
 constexpr int kAnotherRule = 30;
 
-/// Every way to say what the fluent with these arguments is to an event with those: arguments of
-/// the event, variables, constants. Rules without a condition, the cheapest first. Of kAdmits,
-/// which is about no event, there is one, with a variable for each argument.
+/// Every way to describe a fluent with these arguments relative to an event with those: by
+/// arguments of the event, variables, constants. Rules without a condition, the cheapest first. For
+/// kAdmits, which has no event, there is one, with a variable for each argument.
 std::vector<LearnedRule> rule_heads(RuleKind kind, std::size_t event,
                                     const std::vector<std::size_t>& event_arguments,
                                     std::size_t fluent,

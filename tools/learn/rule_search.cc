@@ -178,7 +178,7 @@ class RuleFinder {
       for (std::size_t i = 0; i < met.size(); ++i) {
         if (met[i] == Truth::kTrue) one.shows.insert(i);
       }
-      // A dearer one that says no more of what was seen is not tried.
+      // Skips a condition that excludes and explains no more examples than a cheaper one.
       const bool needless = std::any_of(rated.begin(), rated.end(), [&](const auto& other) {
         return one.excludes.without(other.excludes).first() == std::nullopt &&
                one.shows.without(other.shows).first() == std::nullopt;
@@ -196,7 +196,7 @@ class RuleFinder {
     }
   }
 
-  /// Which runs say so: those that show the effect, and those that the bare rule would contradict.
+  /// Names the runs that show the effect, and those that the bare rule would contradict.
   void name_runs(LearnedRule& rule) const {
     const auto collect = [&](const Transition& from, std::vector<std::string>& to) {
       for (const auto& id : from.runs) {

@@ -99,7 +99,7 @@ class UnitMaker {
 
   void add_literal(std::size_t symbol, std::vector<RuleTerm> terms) {
     const auto& declared = vocabulary_.symbols()[symbol];
-    // An effect is not about what is so already; whether something stays open may be.
+    // An effect needs no condition on its own fluent; an opening may.
     const bool effect = head_.kind == RuleKind::kInitiates || head_.kind == RuleKind::kTerminates;
     if (effect && symbol == head_.fluent && terms == head_.terms) return;
     if (head_.kind == RuleKind::kAdmits && symbol == head_.fluent) return;
@@ -125,8 +125,8 @@ class UnitMaker {
     out_.push_back(std::move(unit));
   }
 
-  /// Has every variable of the head a sort that its place takes? Else instances beyond that sort
-  /// are none, and that the fluent does not hold there says nothing.
+  /// Is the sort of each head variable within that of its place? Otherwise there are no atoms
+  /// beyond that sort, and a false value there tells nothing.
   bool fits(const RuleLiteral& literal) const {
     const auto& sorts = vocabulary_.symbols()[literal.symbol].sorts;
     for (std::size_t i = 0; i < sorts.size(); ++i) {
@@ -137,8 +137,7 @@ class UnitMaker {
     return true;
   }
 
-  /// Conjunctions of the facts of the state that hang together by constants which the head does not
-  /// have.
+  /// Conjunctions of facts of the state that are connected by constants outside of the head.
   void add_joined(std::size_t most) {
     std::vector<std::size_t> facts;
     for (std::size_t i = 0; i < state_.size() && facts.size() < kMostFacts; ++i) {
@@ -165,7 +164,7 @@ class UnitMaker {
 
   void add_conjunction(const std::vector<std::size_t>& facts, std::set<std::string>& known,
                        std::size_t& made) {
-    // Constants that the head has not, by the facts that have them.
+    // Constants outside of the head, with the facts that contain them.
     std::map<std::size_t, std::set<std::size_t>> places;
     for (std::size_t i = 0; i < facts.size(); ++i) {
       const auto& atom = vocabulary_.atoms()[facts[i]];

@@ -7,7 +7,7 @@
 
 namespace parallax::tools {
 
-/// Which conditions are tried: each stage has those before it as well.
+/// Kinds of conditions that are tried; each stage includes the earlier ones.
 enum class UnitStage : std::uint8_t {
   kPlain,      // a literal over the head's variables and "there is one", and unlike variables
   kJoined,     // two literals that share a variable of their own
@@ -24,7 +24,7 @@ struct RuleHead {
 };
 
 /// Every condition of the stage that holds in the state for these values of the head's variables,
-/// cheapest first. Costs say how far a condition is from what people write first.
+/// cheapest first. Costs grow with the distance from what people write first.
 std::vector<RuleUnit> units_that_hold(const RuleHead& head, const LearnVocabulary& vocabulary,
                                       const std::vector<Truth>& state,
                                       const std::vector<std::size_t>& binding, UnitStage stage);

@@ -125,8 +125,8 @@ bool StateAxioms::possible(const Evidence::State& seen, const std::vector<bool>&
   return session_->solve(0, facts) != SolveStatus::kUnsatisfiable;
 }
 
-/// The formula goes without which most states are possible; of several the definition of what was
-/// seen itself, then the first. True: one has gone.
+/// Drops the formula without which most states become possible; among equals a definition of an
+/// observed fluent, then the first. True: one was dropped.
 bool StateAxioms::refute_one(const std::vector<SeenState>& states) {
   const auto now = kept();
   std::vector<std::size_t> votes(parts_.size(), 0);
@@ -201,7 +201,7 @@ void StateAxioms::learn_exceptions(const std::vector<SeenState>& states,
   }
   if (wrong.empty()) return;
   for (auto* part : wrong) part->exceptions.clear();
-  // What else the states say, where nothing is said of exceptions yet.
+  // Completes the states by the other formulas, without any exceptions yet.
   if (const auto text = this->text(true); text != bare_text_) {
     std::string why;
     auto model = compile_text(text, 1, context_, why);
@@ -220,7 +220,8 @@ void StateAxioms::learn_exceptions(const std::vector<SeenState>& states,
   doubt_exceptions(states, truths, stop);
 }
 
-/// What is certain by itself may exclude, with other formulas, a state that runs came to.
+/// Exceptions that are certain by themselves may, together with other formulas, exclude a state
+/// that runs came to. Then none counts as certain.
 void StateAxioms::doubt_exceptions(const std::vector<SeenState>& states,
                                    const std::vector<std::vector<Truth>>& truths,
                                    const std::atomic<bool>& stop) {
@@ -259,7 +260,7 @@ void StateAxioms::learn_exceptions(Part& part, const std::vector<SeenState>& sta
       if (!atom || vocabulary_.atoms()[*atom].symbol != *symbol) continue;
       const auto literal = index_->find(AtomKind::kHoldsAt, fluent, 0);
       if (!literal) continue;
-      // This half is about states of which the definition says `expected`.
+      // This half concerns states in which the definition gives `expected`.
       if (possible(states[i].seen, whole, symbol, expected ? ~*literal : *literal)) continue;
       OpeningExample example{i, {}, vocabulary_.atoms()[*atom].arguments, 0, 0, false, {}};
       (holds ? example.held : example.failed) = states[i].runs.size();
@@ -289,7 +290,7 @@ std::string StateAxioms::weakened(const Part& part, bool everywhere) const {
     anything = anything || text.empty();
     exceptions += fmt::format("{}({})", exceptions.empty() ? "" : " | ", text);
     if (!rule.certain) continue;
-    // The other half says what else there is to say, unless it is wrong, too.
+    // The other half states the remaining conditions, unless it is wrong, too.
     std::vector<std::string> where;
     if (!everywhere && part.at_start && !formula.time.empty())
       where.push_back(formula.time + "!=0");

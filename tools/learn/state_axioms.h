@@ -13,27 +13,27 @@
 
 namespace parallax::tools {
 
-/// A state that runs came to, as it was seen, and what the model says of it.
+/// An observed state, with the runs that came to it.
 struct SeenState {
   Evidence::State seen;
   std::vector<std::string> runs;
   bool start = false;  // of a run
 };
 
-/// A formula about states that runs contradict, and what became of it.
+/// A formula about states that runs contradict, and its replacement.
 struct RefutedFormula {
   std::string text, place;
   std::vector<std::string> runs;
   std::string instead;  // formulas; empty: nothing
 };
 
-/// The formulas about states, as far as runs bear them out. They come from the user and are taken
-/// as they are until a run comes to a state that they exclude. Then the fewest formulas go that
-/// explain all such states. Of a definition, `F <-> G`, each half is a formula by itself: what
-/// contradicts one leaves the other. In the half that is wrong exceptions are learned
-/// (find_openings): certain ones, where it was otherwise whenever anyone saw it, and others; any
-/// other formula goes. At the start, where states are drawn from them, all
-/// hold as they were, but for those that a start contradicts.
+/// The formulas about states, as far as runs confirm them. They come from the user and are kept
+/// until a run comes to a state that they exclude. Then the fewest formulas are dropped that
+/// explain all such states. A definition, `F <-> G`, counts as two formulas, one for each half:
+/// what contradicts one leaves the other. For the wrong half, exceptions are learned
+/// (find_openings): certain ones, where it was wrong whenever it was observed, and others; any
+/// other formula is dropped. At the start, where states are drawn from them, all formulas hold as
+/// written, except those that a start contradicts.
 class StateAxioms {
  public:
   /// `declarations` and `vocabulary` outlive the object. Null: they are no model by themselves;
@@ -42,13 +42,13 @@ class StateAxioms {
                                            const LearnVocabulary& vocabulary,
                                            const Context& context, std::string& why);
 
-  /// Takes back what these states, all that were seen so far, contradict.
+  /// Drops or weakens the formulas that these states, all observed so far, contradict.
   void refute(const std::vector<SeenState>& states, const std::atomic<bool>& stop);
   /// The declarations with what is left of the formulas: `everywhere` without those that hold at
   /// the start alone.
   std::string text(bool everywhere) const;
   std::vector<RefutedFormula> refuted() const;
-  /// Has a fluent that a formula defined no one value any more?
+  /// Is there a fluent with a definition that no longer determines its value?
   bool opens() const;
   /// Changes when the text does.
   std::size_t version() const { return version_; }

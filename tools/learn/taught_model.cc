@@ -70,7 +70,7 @@ void TaughtModel::add(Evidence run, std::int64_t round) {
   }
 }
 
-/// Which formulas about states hold, and how far each run goes within them.
+/// Decides which formulas about states hold, and up to where each run agrees with them.
 void TaughtModel::settle_states(bool learns) {
   std::map<Evidence::State, std::size_t> places;
   std::vector<SeenState> states;

@@ -14,7 +14,7 @@
 
 namespace parallax::tools {
 
-/// The model that all runs so far have taught.
+/// The model learned from all runs so far.
 class TaughtModel {
  public:
   /// The declarations of the scenario's model, of which no run is known yet. `context` outlives the
@@ -23,14 +23,14 @@ class TaughtModel {
                                                          const std::string& scenario,
                                                          Context& context);
 
-  /// Takes runs of a round into account; their ids become "3/1.4". `from_outcomes`: fluent symbols
-  /// that no one observes, of which outcomes have said something (add_outcome_facts).
+  /// Adds runs of a round; their ids become "3/1.4". `from_outcomes`: symbols of unobserved fluents
+  /// with values from outcomes (add_outcome_facts).
   void add(std::vector<ObservedPath> paths, const compiler::CompiledModel& model,
            std::int64_t round, const std::set<std::string>& from_outcomes);
   void add(Evidence run, std::int64_t round);
   /// The model that explains them all; the one before if it was stopped meanwhile.
   void relearn();
-  /// Takes what was added as more of what the model says already.
+  /// Takes the added runs as further evidence for the same model.
   void confirm() { settle_states(false); }
 
   const std::string& text() const { return text_; }
@@ -40,11 +40,11 @@ class TaughtModel {
   const std::vector<Evidence>& runs() const { return runs_; }
   const std::vector<std::string>& contradictions() const { return effects_.contradictions; }
   std::vector<RefutedFormula> refuted() const { return axioms_->refuted(); }
-  /// Is there something that may go one way or another?
+  /// Does the model leave an outcome open?
   bool leaves_open() const;
   std::size_t dropped() const { return declarations_.dropped; }
   RunsCheck check(const std::vector<Evidence>& runs) const;
-  /// What runs cannot teach, or have not taught, in words.
+  /// Describes what runs cannot teach, or have not taught.
   std::vector<std::string> not_learned() const;
 
  private:

@@ -19,7 +19,7 @@ std::vector<std::string> in_order(std::vector<std::string> list) {
   return list;
 }
 
-/// Is `trace` followed by `event` how `events` begin?
+/// Do `events` begin with `trace`, followed by `event`?
 bool goes_through(const std::vector<std::string>& events, const std::vector<std::string>& trace,
                   const std::string& event) {
   if (event == "start") return true;
@@ -27,7 +27,7 @@ bool goes_through(const std::vector<std::string>& events, const std::vector<std:
          events[trace.size()] == event;
 }
 
-/// Of a cause that was counted in a trace, of which only the event, a word and the trace are known.
+/// Does the entry match a counted cause, of which only the event, a word and the trace are known?
 bool is_counted_as(const ShownDiscrepancy& shown, const LedgerEntry& entry) {
   if (shown.event != entry.event) return false;
   if (entry.outcome && *entry.outcome != shown.outcome) return false;
@@ -39,7 +39,7 @@ bool is_counted_as(const ShownDiscrepancy& shown, const LedgerEntry& entry) {
   return !entry.trace || goes_through(shown.trace, *entry.trace, entry.event);
 }
 
-/// The more an entry asks for, the better it fits.
+/// The number of conditions of an entry: the more, the better it fits.
 int precision(const LedgerEntry& entry) {
   return (entry.outcome ? 1 : 0) + (entry.fluents ? 1 : 0) + (entry.trace ? 1 : 0);
 }
@@ -64,7 +64,7 @@ LedgerFinding find_in(const harness::Ledger& ledger, std::string_view scenario,
   return out;
 }
 
-/// Has the run gone where the entry's discrepancy was, and would it have shown it?
+/// Did the run go where the entry's discrepancy was, and would it have shown it?
 bool was_looked_for(const LedgerEntry& entry, const ShownRun& run) {
   if (!run.is_complete) return false;
   if (run.is_executed) return true;
@@ -74,7 +74,7 @@ bool was_looked_for(const LedgerEntry& entry, const ShownRun& run) {
   });
 }
 
-/// In what the entry about the same event is another one.
+/// How the entry about the same event differs from the discrepancy.
 std::string difference_words(const ShownDiscrepancy& shown, const LedgerEntry& entry) {
   std::vector<std::string> parts;
   if (entry.outcome && *entry.outcome != shown.outcome) parts.emplace_back("outcome");

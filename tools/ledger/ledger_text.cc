@@ -79,7 +79,7 @@ bool is_same(const LedgerEntry& a, const LedgerEntry& b) {
   return fields(a) == fields(b);
 }
 
-/// Does the text say just this? What was edited line by line is read again before it is believed.
+/// Does the text parse to exactly this? An edited text is read again before it is used.
 bool says(const std::string& text, const std::vector<LedgerEntry>& expected) {
   base::SourceFiles files;
   base::DiagnosticSink unread;

@@ -16,9 +16,9 @@ std::string new_ledger_text();
 /// dash.
 std::string entry_text(const harness::LedgerEntry& entry, std::size_t indent);
 
-/// The text with one more entry, in front of the first whose scenario and id come behind its own;
-/// everything else stays as it is, comments included. `ledger` is what was read from `text`. None
-/// where the text has a layout in which that cannot be done line by line.
+/// The text with one more entry, before the first whose scenario and id sort after its own;
+/// everything else stays as it is, comments included. `ledger` is the one read from `text`. None
+/// where the layout of the text does not allow that line by line.
 std::optional<std::string> with_entry(std::string_view text, const harness::Ledger& ledger,
                                       const harness::LedgerEntry& entry);
 

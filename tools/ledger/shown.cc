@@ -49,7 +49,7 @@ std::vector<std::string> differing(const Json& list) {
   return out;
 }
 
-/// A perform of an executed plan, with what the plan was told of it.
+/// A perform of an executed plan, with its outcome as the plan was told it.
 std::string step_text(const Json& step) {
   auto out = text(step, "event");
   if (const auto object = text(step, "object"); !object.empty()) out += " = " + object;
@@ -58,14 +58,14 @@ std::string step_text(const Json& step) {
   return out + (condition.empty() ? " fails" : fmt::format(" fails ({})", condition));
 }
 
-/// "Place(r1): not BoxIn(r1)": the event, and what became of it or what differs behind it.
+/// "Place(r1): not BoxIn(r1)": the event, and its outcome or a fluent that differs after it.
 void take_cause(const std::string& cause, ShownDiscrepancy& shown) {
   const auto colon = cause.find(": ");
   shown.event = cause.substr(0, colon);
   const auto rest = colon == std::string::npos ? "" : cause.substr(colon + 2);
   const auto is_fluent = [&](const std::string& fluent) { return fluent == rest; };
   if (std::any_of(shown.fluents.begin(), shown.fluents.end(), is_fluent)) return;
-  // What differs behind an event that failed are consequences.
+  // The event failed: the differing fluents are consequences of that.
   shown.outcome = rest;
   if (!rest.empty()) shown.fluents.clear();
 }
@@ -157,7 +157,8 @@ std::optional<ShownRun> shown_rates(std::string_view document) {
       shown.trace = events;
       const auto words = text(cause, "cause");
       const auto colon = words.find(": ");
-      // Both readings are kept: the ledger's entry says which it is.
+      // A cause may be a fluent or an outcome, so both are kept: the ledger's entry says which it
+      // is.
       if (colon != std::string::npos) shown.fluents = {words.substr(colon + 2)};
       take_cause(words, shown);
       if (!shown.fluents.empty()) shown.outcome = shown.fluents.front();

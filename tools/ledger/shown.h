@@ -7,11 +7,11 @@
 
 namespace parallax::tools {
 
-/// A discrepancy by what stays the same where seeds, samples and line numbers change.
+/// A discrepancy without the properties that depend on seeds, samples and line numbers.
 struct ShownDiscrepancy {
   std::string sample;   // "1.3"; empty where it was counted only
   std::string event;    // the last one before model and world part; "start": they never agreed
-  std::string outcome;  // what became of the event; empty: it went well, and fluents differ
+  std::string outcome;  // outcome of the event; empty: it went well, and fluents differ
   std::vector<std::string> fluents;  // those, sorted: "F(a)" that was seen, "not F(a)"
   std::vector<std::string> trace;    // the events before it: "Detect(cup) = cup1", "Go(r2)"
   std::string words;                 // for people
@@ -19,7 +19,7 @@ struct ShownDiscrepancy {
   bool counted = false;
 };
 
-/// What a run says of discrepancies, and which it would have shown had they been there.
+/// The discrepancies of a run, and those that it would have shown had they been there.
 struct ShownRun {
   std::string scenario;  // as the run names it
   std::vector<ShownDiscrepancy> discrepancies;

@@ -18,7 +18,7 @@ bool is_scenario(const std::string& path) {
   return path.ends_with(".yaml") || path.ends_with(".yml");
 }
 
-/// Clauses and what their variables mean, without where they come from.
+/// The clauses and the meaning of their variables, without their origins.
 std::string key_of_model(const compiler::CompiledModel& model) {
   constexpr std::string_view kComment = "c ";
   constexpr std::array<std::string_view, 8> kMeaning = {
@@ -64,7 +64,7 @@ base::Result<CaseModel> of_scenario(const std::string& path, bool as_run, Contex
   return out;
 }
 
-/// What is told with each event.
+/// The arguments that controllers get with each event.
 std::map<std::string, std::set<compiler::PlanArguments>> told(const compiler::PlanGraph& plan) {
   std::map<std::string, std::set<compiler::PlanArguments>> out;
   for (const auto& location : plan.locations) {

@@ -14,9 +14,8 @@
 
 namespace parallax::tools {
 
-/// What a case of a suite asks about: its model with its plan, compiled for its horizon, as the
-/// command that the case runs compiles them, but for state constraints, which end no trace when
-/// models are compared.
+/// The model of a suite's case with its plan, compiled for its horizon as the command that the case
+/// runs compiles them, except for state constraints, which end no trace when models are compared.
 struct CaseModel {
   compiler::CompiledModel compiled;
   std::string key;  // equal for equal compiled models
@@ -26,10 +25,10 @@ struct CaseModel {
   std::optional<harness::Scenario> scenario;  // that it is about
 };
 
-/// `context` has the texts afterwards, and what is wrong with them.
+/// `context` has the texts afterwards, and the errors in them.
 base::Result<CaseModel> load_case_model(const SuiteCase& one, Context& context);
 
-/// Of two plans with the same events: are controllers surely told the same?
+/// Do controllers surely get the same arguments under two plans with the same events?
 bool same_arguments(const compiler::PlanGraph& a, const compiler::PlanGraph& b);
 
 /// Does the case start simulations? Others are answered by a solver alone.

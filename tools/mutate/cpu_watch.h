@@ -8,8 +8,8 @@
 
 namespace parallax::tools {
 
-/// Ends what a thread computes when it has used its processor time: raises a flag for it. The wall
-/// clock would make answers depend on what else a machine does.
+/// Ends the computation of a thread when its processor time is used up, by raising a flag. With the
+/// wall clock, results would depend on other work on the machine.
 class CpuWatch {
  public:
   /// `stop` raises all flags.
@@ -18,7 +18,8 @@ class CpuWatch {
   CpuWatch(const CpuWatch&) = delete;
   CpuWatch& operator=(const CpuWatch&) = delete;
 
-  /// The calling thread, which is number `thread`, begins something that may take so long.
+  /// The calling thread, number `thread`, begins a computation that may take `seconds` of processor
+  /// time.
   void begin(std::size_t thread, double seconds);
   void end(std::size_t thread);
   std::atomic<bool>& flag(std::size_t thread) { return threads_[thread].flag; }

@@ -33,7 +33,7 @@ std::optional<MutantOutcome> mutant_outcome_of(const std::string& text) {
   return std::nullopt;
 }
 
-/// Nothing for a line that is none, half written or not.
+/// Decodes a line; none if it is half written or not a judgement.
 std::optional<std::pair<std::string, Judgement>> read_line(const std::string& line) {
   const auto json = base::parse_ordered_json(line);
   if (!json.is_object()) return std::nullopt;

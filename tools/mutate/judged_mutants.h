@@ -16,12 +16,12 @@ namespace parallax::tools {
 /// The file in the suite's output folder that --resume reads.
 inline constexpr const char* kJudgedFile = "mutants.ndjson";
 
-/// What was judged, a line each, kept while a suite is mutated. Thread-safe.
+/// Judgements, a line each, kept while a suite is mutated. Thread-safe.
 class JudgedMutants {
  public:
-  /// `suite`: a hash of all that the judgements depend on. With `resume` what the file has of the
-  /// same suite is taken over, and another suite's is refused (kUsage); else it is begun anew. A
-  /// file that is none of ours is never replaced (kUsage).
+  /// `suite`: a hash of all that the judgements depend on. With `resume` the judgements in the file
+  /// about the same suite are taken over, and another suite's are refused (kUsage); else the file
+  /// is begun anew. A file in another format is never replaced (kUsage).
   static base::Result<JudgedMutants> open(const std::filesystem::path& file,
                                           const std::string& suite, bool resume,
                                           base::DiagnosticSink& sink);

@@ -41,7 +41,7 @@ std::string first_error_of(const base::DiagnosticSink& sink) {
   return {};
 }
 
-/// Of a scenario without a limit of its own, from what it takes with the original.
+/// Time limit for a scenario without one of its own, from its time with the original.
 double limit_of_run(double wall_s) {
   constexpr double kLeast = 60.0, kTimes = 10.0;
   return std::max(kLeast, kTimes * wall_s);
@@ -156,7 +156,7 @@ Judgement MutantJudge::look_at(const Mutant& mutant) {
   const auto noticed = [&](std::size_t i, const CaseResult& result) {
     auto why = result.problems.empty() ? std::string() : result.problems.front();
     why = why.substr(0, why.find('\n'));
-    // The copy's folder is of no interest.
+    // Removes the name of the copy's folder.
     for (auto at = why.find(copy_.folder().string()); at != std::string::npos;
          at = why.find(copy_.folder().string())) {
       why.erase(at, copy_.folder().string().size() + 1);
@@ -172,7 +172,7 @@ Judgement MutantJudge::look_at(const Mutant& mutant) {
     if (stop_.load()) return {};
     if (result.outcome == Outcome::kPassed) continue;
     if (result.outcome == Outcome::kFailed) return noticed(i, result);
-    // No answer: is it no model any more?
+    // No answer: perhaps the mutant is not a valid model.
     auto found = compare(i);
     if (found.answer == Told::Answer::kInvalid) {
       return {MutantOutcome::kInvalid, "", std::move(found.why)};

@@ -16,9 +16,9 @@
 
 namespace parallax::tools {
 
-/// What a suite makes of a mutant.
+/// Verdict of a suite on a mutant.
 enum class MutantOutcome : std::uint8_t {
-  kOpen,        // nobody has looked at it
+  kOpen,        // not judged yet
   kNoticed,     // some case does not pass
   kUnnoticed,   // all pass, though some case's traces are others
   kEquivalent,  // every case that reads the file has the same traces, which was proved
@@ -31,7 +31,8 @@ struct Judgement {
   MutantOutcome outcome = MutantOutcome::kOpen;
   std::string by = {};   // the first case that notices it
   std::string why = {};  // what that case says, what does not compile, what is not known
-  /// Of one that is not noticed: a case whose traces are others, and a shortest one that tells.
+  /// For a mutant that is not noticed: a case whose traces differ, and a shortest trace that shows
+  /// it.
   std::string told_in = {};
   bool gained = false;           // it is one of the mutant; else one that the mutant has not
   std::int64_t excluded_by = 0;  // the timepoint by which the other side rules it out
@@ -39,7 +40,7 @@ struct Judgement {
   std::string trace_json = {};   // all of it
 };
 
-/// What all judges of a suite share.
+/// Data that all judges of a suite share.
 struct JudgedSuite {
   const std::vector<SuiteCase>& cases;
   const std::vector<std::optional<CaseModel>>& originals;  // by case
@@ -49,7 +50,7 @@ struct JudgedSuite {
   double compare_s = 60.0;  // processor time for comparing the traces of a case
 };
 
-/// Looks at one mutant after the other, in a copy of its own.
+/// Judges one mutant after the other, in a copy of its own.
 class MutantJudge {
  public:
   /// Everything outlives it. `own_cases`: the cases of the copy, parallel to those of the suite.
@@ -72,7 +73,7 @@ class MutantJudge {
     Judgement judgement = {};  // kDiffers
   };
   Told compare(std::size_t index);
-  /// What `flag` ends early is unknown.
+  /// The answer is kUnknown if `flag` ends it early.
   Told compare_models(const CaseModel& original, const CaseModel& mutated,
                       const std::atomic<bool>& flag);
   Judgement look_at(const Mutant& mutant);
@@ -83,7 +84,8 @@ class MutantJudge {
   CpuWatch& watch_;
   std::size_t thread_;
   const std::atomic<bool>& stop_;
-  /// Of the mutant at hand: by the keys of two models, as several cases may have the same.
+  /// Comparisons for the mutant at hand, by the keys of two models, as several cases may have the
+  /// same.
   std::map<std::pair<std::string, std::string>, Told> compared_;
 };
 

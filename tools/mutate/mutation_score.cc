@@ -103,7 +103,7 @@ class SuiteMutation {
     keep_spread(files_.mutants, options_.at_most);
   }
 
-  /// All that the judgements depend on.
+  /// Everything that the judgements depend on.
   std::string identity() const {
     std::string all = program_hash() + '\n' + std::to_string(options_.runner.seed) + '\n';
     for (const auto& one : cases_) all += one.name() + '\n';
@@ -190,8 +190,8 @@ class SuiteMutation {
     return score_.red.empty();
   }
 
-  /// What a copy names by an absolute name is read where it lies, so a mistake in its copy would be
-  /// seen by nobody.
+  /// Removes mutants of files that a case names by an absolute name: the original is read, not the
+  /// copy with the mistake, so nobody would notice it.
   void pass_over(MutantJudge& judge) {
     std::set<std::string> outside;
     for (std::size_t i = 0; i < cases_.size(); ++i) {

@@ -16,13 +16,13 @@ struct MutationOptions {
   std::filesystem::path out;  // the file of judged mutants lies there
   RunnerOptions runner;       // of the suite itself
   std::int64_t jobs = 1;
-  std::size_t at_most = 0;  // mutants that are looked at; 0: all
+  std::size_t at_most = 0;  // limit on mutants to judge; 0: all
   std::string only_files;   // mutants of files whose names contain this
   bool resume = false;
   const ResultCache* cache = nullptr;  // of the suite's passes
 };
 
-/// What a suite is worth: which mistakes in its models and plans it would notice.
+/// Mutation score of a suite: the mistakes in its models and plans that it would notice.
 struct MutationScore {
   std::vector<std::string> red;  // lines about cases that do not pass; then nothing was mutated
   std::size_t cases = 0;
@@ -37,15 +37,15 @@ struct MutationScore {
   }
 };
 
-/// Looks at every mutant. First the suite itself is run: one that does not pass cannot be scored.
-/// Mutants live in a new folder among the temporary ones, which is removed; no file of the suite is
-/// written. The answer does not depend on `jobs`. What was judged is kept in
-/// OUT/mutants.ndjson as it comes; `resume` takes it over if nothing else has changed since.
-/// Reports results of another suite there (kUsage), and what cannot be read or written.
+/// Judges every mutant. First the suite itself is run: one that does not pass cannot be scored.
+/// Mutants live in a new temporary folder, which is removed; no file of the suite is written. The
+/// answer does not depend on `jobs`. Judgements are written to OUT/mutants.ndjson as they come;
+/// `resume` takes them over if nothing else has changed since. Reports results of another suite
+/// there (kUsage), and files that cannot be read or written.
 base::Result<MutationScore> score_suite(const std::vector<SuiteCase>& cases,
                                         const MutationOptions& options, Context& context);
 
-/// The answer for people: what is not noticed, and numbers.
+/// The answer as text: mutants that are not noticed, and numbers.
 std::string mutation_text(const MutationScore& score);
 /// The same as JSON, with every mutant.
 std::string mutation_document(const MutationScore& score);

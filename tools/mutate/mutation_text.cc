@@ -38,7 +38,7 @@ struct Numbers {
   std::size_t observable() const { return noticed + unnoticed; }
 };
 
-/// Rounded down: 100 % is said of all alone.
+/// Rounded down, so that 100 % means all of them.
 std::string share(std::size_t part, std::size_t whole) {
   if (whole == 0) return "-";
   const auto tenths = part * 1000 / whole;

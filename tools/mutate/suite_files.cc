@@ -36,7 +36,7 @@ class SuiteReader {
  private:
   base::Status read_case(std::size_t i) {
     const auto& one = cases_[i];
-    // Its files are its own, so that what another case has read is not taken for them.
+    // Each case has its own list of files, so that files read for another case are not counted.
     Context own(context_.form(), context_.stop());
     auto model = load_case_model(one, own);
     out_.originals.emplace_back();

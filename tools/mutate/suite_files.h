@@ -22,7 +22,7 @@ struct Mutant {
   std::vector<std::size_t> cases;  // that read the file, those that cost least first
 };
 
-/// All that the cases of a suite read, and what can be wrong with it.
+/// All files that the cases of a suite read, and the mistakes that can be made in them.
 struct SuiteFiles {
   SuiteTexts texts;
   std::vector<std::set<std::string>> reads;         // by case: where its files really lie
@@ -30,7 +30,7 @@ struct SuiteFiles {
   std::vector<Mutant> mutants;                      // by file and line
 };
 
-/// Compiles the models of the cases as they are, and makes every mutant of them. Reports what
+/// Compiles the original models of the cases, and makes every mutant of them. Reports files that
 /// cannot be read.
 base::Result<SuiteFiles> look_at_suite(const std::vector<SuiteCase>& cases, Context& context);
 

@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t kMostEvents = 60;   // of a trace that is named
 constexpr std::size_t kMostTraces = 500;  // rows
 
-/// What a trace is, whatever its number: its events, and where another has the same, its start.
+/// Identifies a trace regardless of its number: by its events and, where several have the same, its
+/// start.
 std::string key_of(const PageTrace& trace, bool with_start) {
   std::string out;
   for (const auto& step : trace.steps) out += step.event + ';';
@@ -26,7 +27,7 @@ std::string key_of(const PageTrace& trace, bool with_start) {
   return out;
 }
 
-/// The events of which some run has several traces, which begin in different states.
+/// The events for which some run has several traces, which begin in different states.
 std::set<std::string> ambiguous_events(const std::vector<PageData>& pages) {
   std::set<std::string> out;
   for (const auto& page : pages) {
@@ -39,7 +40,7 @@ std::set<std::string> ambiguous_events(const std::vector<PageData>& pages) {
   return out;
 }
 
-/// What holds at the start of a trace and not at that of every other one with its events.
+/// Fluents that hold at the start of a trace and not at that of every other one with its events.
 std::string start_of(const PageTrace& trace, const std::vector<PageData>& pages) {
   const auto events = key_of(trace, false);
   std::map<std::string, std::size_t> counts;
@@ -155,7 +156,7 @@ std::string overview(const std::vector<PageData>& pages) {
       table_of("Verdicts and rates", "<th scope=\"col\"></th>" + column_heads(pages), rows));
 }
 
-/// Every trace that some run has, with what became of it in each.
+/// Every trace that some run has, with its result in each run.
 std::string traces(const std::vector<PageData>& pages) {
   const auto ambiguous = ambiguous_events(pages);
   const auto is_ambiguous = [&](const PageTrace& trace) {

@@ -21,7 +21,7 @@ struct Curve {
   std::int64_t aside = 0, unfinished = 0, open = 0;  // not counted; not known
 };
 
-/// The criterion by the error that the trace may spend.
+/// The criterion with the share of the error that the trace may spend.
 harness::CriterionSpec asked_of(const PageData& page, const PageTrace& trace) {
   auto spec = page.asked;
   spec.confidence_level = page.confidence;
@@ -30,8 +30,8 @@ harness::CriterionSpec asked_of(const PageData& page, const PageTrace& trace) {
   return spec;
 }
 
-/// The bound after each run with a drawn start that came to its end, in order, or after some of
-/// many: as the run itself counts.
+/// The bound after each finished run with a drawn start, in order, or after a selection of many:
+/// counted as the run itself does.
 Curve curve_of(const PageData& page, const PageTrace& trace) {
   Curve curve;
   std::vector<bool> failed;
@@ -131,7 +131,7 @@ std::string plot(const PageData& page, const PageTrace& trace, const Curve& curv
 
 namespace {
 
-/// What the curve counts, and what the report certifies.
+/// Explains the counts of the curve and the certificate of the report.
 std::string caption(const PageData& page, const PageTrace& trace, const Curve& curve) {
   auto out = fmt::format("{}: {} {}, {} not clean. ", stream_name(page, trace), curve.runs,
                          curve.runs == 1 ? "run" : "runs", curve.failures);

@@ -1,6 +1,4 @@
-# cmake -DOUTPUT=assets.cc -DSTYLE=page.css -DSCRIPT=page.js -DDOTS=dots.js -DREPLAY=replay.js
-#       -DTHREE=three.min.js -DTHREE_LICENCE=three_licence.js -P embed.cmake
-# Writes C++ that holds the files as raw string literals, in pieces that every compiler takes.
+# Writes C++ that holds the files as raw string literals, in pieces short enough for every compiler.
 cmake_policy(SET CMP0053 NEW)  # @names@ are replaced by file(CONFIGURE) alone
 
 function(literal name out)

@@ -57,7 +57,7 @@ std::optional<harness::JournalText> journal_of(const std::string& folder, Contex
   return std::move(*journal);
 }
 
-/// What `explain` simulated beside the run; none if there is nothing of the kind that can be read.
+/// Simulations that `explain` added beside the run; none if there are none, or they cannot be read.
 std::optional<harness::JournalText> further_of(const std::string& folder, Context& context) {
   const auto place = fs::path(folder) / kFurtherRuns;
   if (!has(place / harness::kJournalName)) return std::nullopt;
@@ -83,7 +83,8 @@ void read_report(const std::string& folder, Context& context, PageData& page) {
   }
 }
 
-/// What `confirm` and `threshold` have left in the folder, of the discrepancies of the report.
+/// Adds the findings that `confirm` and `threshold` left in the folder about the report's
+/// discrepancies.
 void add_findings(const harness::JournalText& journal, PageData& page) {
   constexpr std::size_t kMost = 50;  // discrepancies that are asked about
   for (std::size_t i = 0; i < page.discrepancies.size() && i < kMost; ++i) {
@@ -138,7 +139,7 @@ base::Result<PageData> gather_page(const PageOptions& options, Context& context)
     Context own(quiet(context), context.stop());
     read_report(folder, own, page);
   }
-  // One for journal and scenario: what is said of a simulation may point into both.
+  // One context for journal and scenario: messages about a simulation may point into both.
   Context own(quiet(context), context.stop());
   const auto journal = journal_of(folder, own, page);
   if (!journal) return page;

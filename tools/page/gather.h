@@ -12,16 +12,16 @@ namespace parallax::tools {
 
 struct PageOptions {
   std::string folder;
-  std::string scenario;  // where it lies by now; empty: where the journal says
+  std::string scenario;  // if the file was moved; empty: where the journal says
   bool explain = false;  // also where `explain` has not been at the folder
   bool repair = false;
   std::string ledger;                   // file of known discrepancies; empty: none is asked
   std::vector<std::string> properties;  // of the scenario; with a ledger
 };
 
-/// What a page shows of a run folder: report.json and journal as they are, nothing is simulated.
-/// What is missing, damaged or changed becomes a banner. Fails, having reported, only where the
-/// folder holds nothing of a run.
+/// The contents of a run folder's page: report.json and journal as they are, nothing is simulated.
+/// Missing, damaged or changed files become a banner. Fails, having reported, only where the folder
+/// holds nothing of a run.
 base::Result<PageData> gather_page(const PageOptions& options, Context& context);
 
 // Its parts.
@@ -35,16 +35,16 @@ bool add_report(const std::string& text, PageData& page);
 void add_journal(const harness::JournalText& journal, const harness::JournalText* further,
                  PageData& page);
 
-/// Of the discrepancies and of a clean simulation of each trace, which are judged by now. `loaded`
-/// may be null: then nothing says what was observed.
+/// Adds timelines of the discrepancies and of a clean simulation of each trace, after all were
+/// judged. `loaded` may be null: then nothing says what was observed.
 void add_timelines(const harness::JournalText& journal, const ScenarioModel* loaded,
                    PageData& page);
 
 /// One simulation, not judged yet; `page` has its variables and bodies.
 PageSample page_sample(const harness::SampleRecord& record, const PageData& page);
 
-/// Executions of the plan in `journal` of which nothing says one by one how they ended: held
-/// against the model as `explain` does it. Of very many only the first.
+/// Judges the executions of the plan in `journal` whose results are not recorded one by one, with
+/// the model as `explain` does it; if there are very many, only the first ones.
 void judge_executions(const harness::JournalText& journal, const ScenarioModel& loaded,
                       Context& context, PageData& page);
 
@@ -66,13 +66,13 @@ void add_motion(PageData& page);
 /// Regions and furniture, sources, axioms by event.
 void add_world(const ScenarioModel& loaded, const base::SourceFiles& files, PageData& page);
 
-/// What `explain` and `repair` say of the folder, without further simulations.
+/// Adds the results of `explain` and `repair` for the folder, without further simulations.
 void add_blame(const PageOptions& options, Context& context, PageData& page);
 void add_repair(const PageOptions& options, Context& context, PageData& page);
 
-/// What the ledger says of the run, and of each property whether it rests on an open discrepancy.
-/// `scenario`: the file, empty where it is not what was run any more. Fails, having reported, where
-/// the ledger or a property cannot be read.
+/// Adds the ledger's entries for the run, and for each property whether it rests on an open
+/// discrepancy. `scenario`: the file, empty where it has changed since the run. Fails, having
+/// reported, where the ledger or a property cannot be read.
 base::Status add_ledger(const PageOptions& options, const std::string& scenario, Context& context,
                         PageData& page);
 

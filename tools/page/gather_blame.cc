@@ -18,8 +18,8 @@
 namespace parallax::tools {
 namespace {
 
-/// Simulations that `explain` made, in a folder of the run folder; of those of another trace than
-/// the discrepancy's there are none.
+/// Simulations that `explain` made, from a folder of the run folder; empty for another trace than
+/// the discrepancy's.
 std::vector<harness::SampleRecord> records_of(const std::string& folder, const char* name) {
   std::vector<harness::SampleRecord> out;
   const auto further = (std::filesystem::path(folder) / name).string();

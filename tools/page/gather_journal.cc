@@ -49,7 +49,7 @@ void add_variables(const std::vector<const harness::JournalText*>& journals, Pag
   page.bodies.assign(bodies.begin(), bodies.end());
 }
 
-/// Where a body is; a coordinate that is not observed is what the start had, else 0.
+/// The position of a body; an unobserved coordinate is that of the start, else 0.
 BodyWay way_of(const SampleRecord& record, const std::string& body) {
   BodyWay way;
   const auto x = body + ".x", y = body + ".y";
@@ -73,7 +73,7 @@ const PageDiscrepancy* discrepancy_in(const PageData& page, std::int64_t trace,
   return nullptr;
 }
 
-/// Does the report say that each simulation of the trace which is no discrepancy was clean?
+/// Does the report say that each simulation of the trace without a discrepancy was clean?
 bool others_are_clean(const PageData& page, std::int64_t trace) {
   std::int64_t found = 0;
   for (const auto& one : page.discrepancies) found += one.trace == trace ? 1 : 0;
@@ -113,7 +113,7 @@ PageSample page_sample(const SampleRecord& record, const PageData& page) {
 
 namespace {
 
-/// What was predicted of a trace, and observed, as the journal has it.
+/// Makes timelines of predicted and observed fluents from the journal.
 class TimelineMaker {
  public:
   TimelineMaker(const harness::JournalText& journal, const ScenarioModel* loaded,
@@ -210,8 +210,8 @@ class TimelineMaker {
     }
   }
 
-  /// What report.json knows, also without the scenario. Of an executed plan the model goes along
-  /// with all that was observed, up to the difference.
+  /// Adds the differences in report.json, also without the scenario. For an executed plan the model
+  /// agrees with all observations up to the difference.
   template <typename RowOf>
   void report(const PageDiscrepancy& found, std::size_t count, const RowOf& row_of) const {
     for (const auto* differing : {&found.first, &found.fluents}) {

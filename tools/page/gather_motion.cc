@@ -17,9 +17,8 @@ namespace {
 constexpr std::size_t kMostRuns = 20;
 constexpr std::size_t kMostFrameBytes = std::size_t{1800} << 10U;
 
-/// The simulations whose motion is to be shown, those that matter most first: the first discrepancy
-/// of each cause, each with a clean one of its trace; without discrepancies the first of each
-/// trace.
+/// The simulations to show in motion, the most important first: the first discrepancy of each
+/// cause, each with a clean one of its trace; without discrepancies the first of each trace.
 std::vector<const PageSample*> chosen_runs(
     const PageData& page, const std::set<std::pair<std::int64_t, std::int64_t>>& on_record) {
   const auto has = [&](const PageSample& sample) {
@@ -108,7 +107,7 @@ void add_motion(PageData& page) {
         run.parting = timeline.parting;
     }
   }
-  // What one would want to see first.
+  // Suggests the simulation that one would want to see first.
   for (const auto& sample : page.samples) {
     if (sample.verdict != SampleVerdict::kDiscrepancy || sample.origin == SampleOrigin::kFurther)
       continue;

@@ -20,7 +20,7 @@ constexpr std::string_view kProofEnding = ".proof.json";
 constexpr std::size_t kMostProofs = 20;
 constexpr std::size_t kBins = 24;        // of a variable, where boxes are told by shares
 constexpr std::size_t kMostParts = 600;  // of a map that are boxes of the proof
-/// Simulations times boxes that are gone through for what began where.
+/// Limit on simulations times boxes, for counting starts in boxes.
 constexpr std::size_t kMostLookUps = 40'000'000;
 
 std::vector<std::string> proof_files(const std::string& folder) {
@@ -34,7 +34,7 @@ std::vector<std::string> proof_files(const std::string& folder) {
   return out;
 }
 
-/// Bins [first, last) of a range that an interval touches, and which share of one lies in it.
+/// Bins [first, last) of a range that an interval touches, and the share of the interval in each.
 struct BinRange {
   BinRange(const harness::Bounds1& part, const harness::Bounds1& whole) {
     const double scale = static_cast<double>(kBins) / (whole.upper - whole.lower);
@@ -61,7 +61,7 @@ double part_of_region(const harness::StartBox& box, const harness::StartBox& reg
   return share;
 }
 
-/// By how much the shares along a variable differ from those of the whole region.
+/// Sum of the differences between the shares along a variable and those of the whole region.
 double sway_of(const harness::TestCertificate& test, const harness::StartBox& region,
                std::size_t axis) {
   std::array<double, kBins> safe{}, refuted{};
@@ -150,7 +150,7 @@ std::optional<PageProofMap> map_of(const harness::Certificate& certificate,
   return map;
 }
 
-/// What began where; nothing where a variable of the proof is not on record.
+/// Counts starts by verdict of their box; none where a variable of the proof is not on record.
 void count_starts(const harness::Certificate& certificate, const harness::TestCertificate& test,
                   const PageData& page, PageProofTest& out) {
   std::vector<std::size_t> columns;
@@ -175,7 +175,7 @@ void count_starts(const harness::Certificate& certificate, const harness::TestCe
   }
 }
 
-/// Why the certificate is none of this run; empty: it is.
+/// Why the certificate is not about this run; empty: it is.
 std::string misfit_of(const harness::Certificate& certificate, const harness::JournalHeader& header,
                       const PageData& page) {
   if (certificate.scenario_hash != header.scenario_hash) {

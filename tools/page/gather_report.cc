@@ -47,7 +47,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A member of an object of this type, or what stands for one that is not there.
+/// A member of an object with this type, or the fallback if there is none.
 template <typename T>
 T field(const json& object, const char* name, T otherwise = {}) {
   const auto* value = base::json_member(object, name);
@@ -60,7 +60,7 @@ std::int64_t whole(const json& object, const char* name) {
 }
 std::string text(const json& object, const char* name) { return field<std::string>(object, name); }
 
-/// The members of a list; none where it is none.
+/// The members of a list; empty for other values.
 const json::array_t& list(const json& object, const char* name) {
   static const json::array_t kNone;
   const auto* value = base::json_member(object, name);

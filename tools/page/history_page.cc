@@ -30,7 +30,7 @@ const char* outcome_class(const HistoryCase& one) {
   return one.outcome == "error" ? "lost" : "open";
 }
 
-/// A letter, so that colour is not all that tells.
+/// A letter, so that the page does not rely on colour alone.
 const char* outcome_letter(const HistoryCase& one) {
   if (one.outcome == "passed") return one.flaky ? "f" : "&#10003;";
   if (one.outcome == "failed") return "&#10007;";
@@ -62,7 +62,7 @@ class SuitePart {
 
   std::string changes_html() const {
     std::string rows;
-    // The newest first: it is what is asked for.
+    // The newest first, as it is the most interesting.
     const auto& points = changes_.points;
     for (std::size_t k = 0; k < points.size() && k < kMostChanges; ++k) {
       const auto& point = points[points.size() - 1 - k];

@@ -16,10 +16,10 @@ struct Recording;
 
 namespace parallax::tools {
 
-/// What became of a simulation, as far as the run folder tells.
+/// Verdict on a simulation, as far as the run folder tells.
 enum class SampleVerdict : std::uint8_t { kClean, kDiscrepancy, kLost, kNotJudged };
 
-/// How a simulation came by its start. Claims are about drawn starts alone.
+/// Origin of a simulation's start. Claims are about drawn starts alone.
 enum class SampleOrigin : std::uint8_t {
   kDrawn,
   kChosen,   // for what it leads to
@@ -101,9 +101,9 @@ struct PageTrace {
   std::vector<std::string> not_covered;
   std::vector<PageStep> steps;
   std::vector<PageCause> causes;
-  // Of executions of the plan.
+  // For executions of the plan.
   std::int64_t chosen_starts = 0, unfinished = 0;
-  std::string covered;  // what came of going on until everything was shown
+  std::string covered;  // the result of running until everything was shown
   std::vector<PagePath> paths;
 };
 
@@ -162,7 +162,7 @@ struct PageBlame {
   bool cause_first = false;  // runs from one start contradict each other
 };
 
-/// What `confirm` or `threshold` found out of one simulation.
+/// Finding of `confirm` or `threshold` about one simulation.
 struct PageFinding {
   std::string sample;  // "2.4"
   std::vector<std::string> sentences;
@@ -180,7 +180,7 @@ struct PageSource {
   std::string name, text;
 };
 
-/// What a ledger says of the run, and which properties of its scenario rest on that.
+/// The ledger's entries for the run, and the properties of its scenario that rest on them.
 struct PageLedger {
   struct Row {
     std::string id, is, words;  // the entry; how it stands; what the run showed
@@ -197,13 +197,13 @@ struct PageLedger {
   std::vector<Property> properties;
 };
 
-/// A part of a plane of two variables of the start, and how the volume above it is shared out.
+/// A cell in the plane of two variables of the start, with the shares of the volume above it.
 struct PageProofPart {
   std::array<double, 2> x{}, y{};
   double safe = 0.0, refuted = 0.0;  // the rest is open
 };
 
-/// Where a test passes and where it refuses, over the two variables that it depends on most.
+/// Map of where a test passes and where it refuses, over the two variables that it depends on most.
 struct PageProofMap {
   std::string x_name, y_name;
   std::array<double, 2> x{}, y{};
@@ -211,7 +211,7 @@ struct PageProofMap {
   std::vector<PageProofPart> parts;
 };
 
-/// What was proved of one test of a controller, as a certificate has it.
+/// Proof of one test of a controller, from a certificate.
 struct PageProofTest {
   std::string function, source, asks;
   std::vector<std::string> assumed;
@@ -278,7 +278,7 @@ struct PageData {
   bool repair_was_asked = false;
   std::string repair_words;               // where there are no proposals
   std::vector<std::string> repair_notes;  // what runs refuted, and what they leave open
-  /// None: there is nothing in the folder that anything could be shown of.
+  /// None: the folder has nothing that could be shown.
   bool empty() const { return traces.empty() && samples.empty() && verdict.empty(); }
 };
 

@@ -24,9 +24,9 @@ struct PictureIndex {
   std::vector<PictureStep> steps;
 };
 
-/// A page over the pictures of one simulation: what happened in a sentence, the picture of where
-/// model and simulation part, the list of events, then all pictures. Self-contained, as pages of
-/// `parallax report` are.
+/// A page with the pictures of one simulation: a sentence on the outcome, the picture of where
+/// model and simulation part, the list of events, then all pictures. Self-contained, like pages of
+/// `parallax report`.
 std::string picture_index(const PictureIndex& index);
 
 }  // namespace parallax::tools

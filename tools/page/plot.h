@@ -34,15 +34,16 @@ class DotPath {
   std::string d_;
 };
 
-/// The dots of one kind of simulation: what went wrong is a larger square, so that colour is not
-/// all that tells; `aside`: no claim is about it.
+/// The dots of one kind of simulation. Failures are larger squares, so that the plot does not rely
+/// on colour alone; `aside`: no claim is about it.
 std::string dot_class(SampleVerdict verdict, bool aside);
 
-/// Beyond so many simulations all dots are a script's to draw, on a canvas.
+/// With more simulations than this, a script draws all dots on a canvas.
 inline constexpr std::size_t kMostDots = 1000;
-/// Those whose dots are in the page itself: all, or of very many some, what went wrong first.
+/// Simulations whose dots are in the page itself: all, or a selection if there are very many,
+/// failures first.
 std::vector<const PageSample*> dotted(const std::vector<const PageSample*>& samples);
-/// What says so without scripts; empty where all are drawn.
+/// Hint for pages without scripts that not all dots are drawn; empty where all are.
 std::string dots_hint(std::size_t samples);
 
 /// "12.3", as coordinates are written.

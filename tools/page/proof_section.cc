@@ -14,7 +14,7 @@ namespace {
 constexpr double kMapSide = 300.0, kMapLeft = 56.0, kMapBottom = 40.0, kMapPad = 12.0;
 constexpr std::size_t kMostActions = 100, kMostAssumed = 100;
 
-/// "42.4 %": no more is said to be proved than is.
+/// "42.4 %": rounded so that no more is claimed than is proved.
 std::string proved_text(double share) { return harness::percent_down(share); }
 std::string open_text(double share) { return harness::percent_up(share); }
 
@@ -138,7 +138,8 @@ std::string map_svg(const PageData& page, std::int64_t trace, const PageProofMap
       "refuted and open over {1} and {2}\">\n<g class=\"proved\">{3}\n",
       px(kMapSide), html_short(map.x_name), html_short(map.y_name), rect("open", x, y, whole, 1.0));
   for (const auto& part : joined_parts(map)) {
-    // The second colour lies over the first one: together they are as much as each is to be.
+    // The second colour is drawn over the first one: the opacities are chosen so that both shares
+    // show.
     const double rest = 1.0 - part.refuted;
     const char* edge = map.is_exact ? " box" : "";
     if (part.safe > 0.0 && rest > 0.0) {
@@ -164,7 +165,7 @@ std::string began_text(const PageProofTest& test) {
   return all == 0 ? "" : fmt::format("Dots are simulations of drawn starts: {}.", out);
 }
 
-/// The map of a test, and what began where; empty for one that is the same everywhere.
+/// The map of a test with the starts of simulations; empty for a test that is the same everywhere.
 std::string test_figure(const PageData& page, std::int64_t trace, const PageProofAction& action,
                         const PageProofTest& test) {
   if (!test.map) return {};
@@ -177,7 +178,7 @@ std::string test_figure(const PageData& page, std::int64_t trace, const PageProo
                      map_svg(page, trace, *test.map));
 }
 
-/// Of all tests, each once.
+/// The assumptions of all tests, each once.
 std::string assumed_list(const PageProof& proof) {
   std::vector<std::string_view> all;
   for (const auto& action : proof.actions) {

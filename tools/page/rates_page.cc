@@ -81,7 +81,7 @@ std::string causes_plot(const TraceRates& trace) {
 bool failed(const SampleRow& row) { return std::string_view(row.outcome) == "discrepancy"; }
 bool was_lost(const SampleRow& row) { return std::string_view(row.outcome) == "lost"; }
 
-/// The rate after each run and the bound that holds whenever one looks.
+/// The rate after each run, and the anytime-valid bound.
 std::string settling_plot(const TraceRates& trace, const std::vector<const SampleRow*>& rows,
                           double confidence) {
   const auto runs = std::ssize(rows);

@@ -8,7 +8,7 @@
 
 namespace parallax::tools {
 
-/// What `parallax rates` counted as a page with plots: of each trace how often each cause comes,
+/// A page with plots of the counts of `parallax rates`: for each trace how often each cause comes,
 /// how rate and bound settled with the number of runs, and how the rate depends on the variable of
 /// the start that tells failures best. `rows` are all its simulations.
 std::string rates_page(const harness::RatesResult& result,

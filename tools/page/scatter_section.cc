@@ -64,7 +64,7 @@ class Panel {
     return v_ < plotted_.chosen.size() ? page_.variables[plotted_.chosen[v_]] : "simulation";
   }
 
-  /// What assets/dots.js needs to draw them all.
+  /// Attributes from which assets/dots.js draws all dots.
   std::string canvas_words() const {
     if (plotted_.samples.size() <= kMostDots) return {};
     return fmt::format(
@@ -141,7 +141,8 @@ class Panel {
 
 PlottedVariables plotted_variables(const PageData& page) {
   PlottedVariables out;
-  // What the traces' starts have in common need not be much: one trace, the one that parted.
+  // Starts of different traces may have little in common: only the trace with the first discrepancy
+  // is plotted.
   if (!page.discrepancies.empty()) out.trace = page.discrepancies.front().trace;
   for (const auto& sample : page.samples) {
     if (!out.trace || sample.trace == *out.trace) out.samples.push_back(&sample);

@@ -40,7 +40,7 @@ class SourceLinks {
 };
 
 std::string verdict_section(const PageData& page);
-/// What is claimed, each with what it is about, that of the traces which decided the verdict first;
+/// The claims, each with its subject, those about the traces that decided the verdict first;
 /// escaped.
 std::vector<std::string> claims_of(const PageData& page);
 /// "Trace 2", or "Executions" of a plan that was executed.
@@ -55,15 +55,15 @@ std::string scatter_section(const PageData& page);
 std::string motion_section(const PageData& page);
 std::string confidence_section(const PageData& page);
 std::string ledger_section(const PageData& page);
-/// What another simulator made of the run.
+/// Results of the same run with another simulator.
 std::string opinion_section(const PageData& page);
-/// What was proved about starts.
+/// Proofs about starts.
 std::string proof_section(const PageData& page);
 std::string blame_section(const PageData& page, const SourceLinks& links);
 std::string samples_section(const PageData& page);
 std::string coverage_section(const PageData& page);
 std::string traces_section(const PageData& page, const SourceLinks& links);
-/// What the scripts read: starts and ways of the simulations.
+/// Data for the scripts: starts and ways of the simulations.
 std::string data_block(const PageData& page);
 
 /// The variables of the start that are plotted, by index, the decisive ones first.

@@ -91,7 +91,7 @@ std::string blame_section(const PageData& page, const SourceLinks& links) {
     const auto cause = blame.cause.empty()
                            ? std::string()
                            : "<p><b>Kind of cause:</b> " + html_words(blame.cause) + "</p>\n";
-    // Where runs contradict each other it is no axiom that has to change at once.
+    // Where runs contradict each other, no axiom has to change at once.
     if (blame.cause_first) out += cause;
     out += "<p class=\"lead\">" + html_words(blame.words) + "</p>\n";
     if (!blame.more.empty()) out += "<p>" + html_words(blame.more) + "</p>\n";

@@ -134,7 +134,8 @@ std::string steps_table(const std::vector<PageStep>& steps, std::optional<std::s
       out += fmt::format(
           "<td data-label=\"Outcome\"><span class=\"{}\">{}</span>{}{}</td><td class=\"num\" "
           "data-label=\"Took\">{}</td>",
-          // The model has other failures, too, or they are consequences.
+          // Only the marked step is coloured: the model allows other failures, or they are
+          // consequences.
           step.outcome == "ok" || marked == i ? verdict_class(step.outcome) : "open",
           html_short(step.outcome), step.reason.empty() ? "" : ": ", html_words(step.reason),
           step.sim_time_s ? number(*step.sim_time_s) + " s" : "");
@@ -174,14 +175,14 @@ std::string rule_html(const PageRule& rule) {
 }
 
 std::vector<std::string> claims_of(const PageData& page) {
-  // In front of others the trace that the first discrepancy is of.
+  // The trace of the first discrepancy comes first.
   const auto rank = [&](const PageTrace& trace) {
     if (!page.discrepancies.empty() && trace.number == page.discrepancies.front().trace) return 0;
     return trace.verdict == page.verdict ? 1 : 2;
   };
   std::vector<std::string> out;
   if (!page.claim.empty()) {
-    constexpr std::size_t kLongest = 1000;  // the names in it are none of a stranger's
+    constexpr std::size_t kLongest = 1000;  // its names are not a stranger's
     const auto whose = page.traces.size() == 1 ? stream_name(page, page.traces.front())
                                                : std::string("All traces");
     out.push_back("<b>" + whose + ":</b> " + html(page.claim.substr(0, kLongest)) + '.');

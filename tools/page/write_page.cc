@@ -65,7 +65,7 @@ std::string html_document(const std::string& title, const std::string& body,
 
 std::string run_page(const PageData& page, const DocumentOptions& options) {
   const SourceLinks links(page);
-  // In the order in which a reader asks: what, where, how it looked, from which starts, how sure,
+  // In the order of a reader's questions: what, where, how it looked, from which starts, how sure,
   // why.
   const std::vector<Part> parts = {
       {"discrepancy", "Where they part", discrepancy_section(page, links)},

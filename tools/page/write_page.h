@@ -7,22 +7,22 @@
 
 namespace parallax::tools {
 
-/// By which an earlier page is known.
+/// Marks a page, so that an earlier one is recognized.
 inline constexpr const char* kPageMark = "<meta name=\"generator\" content=\"parallax report\">";
 
 struct DocumentOptions {
-  int reload_s = 0;            // the page loads itself again after so many seconds; 0: never
+  int reload_s = 0;            // the page reloads itself after this time; 0: never
   bool has_many_dots = false;  // plots need the script that draws on a canvas
   bool has_motion = false;     // there is something to be drawn with WebGL
   std::string style = {};      // beside that of all pages; not from a run folder
 };
 
-/// The page of one run folder, as one HTML file: no network, readable without scripts, and nothing
-/// that a run folder holds is markup in it.
+/// The page of one run folder, as one HTML file: no network, readable without scripts, and no text
+/// of a run folder is taken as markup.
 std::string run_page(const PageData& page, const DocumentOptions& options = {});
 
-/// How several runs differ: verdicts, rates with intervals, traces that one has and another has
-/// not. The first one is what the others are held against.
+/// Comparison of several runs: verdicts, rates with intervals, traces that only some of them have.
+/// The others are compared with the first one.
 std::string comparison_page(const std::vector<PageData>& pages);
 
 /// The document around a body: style and script inline, allowed by their hashes alone.

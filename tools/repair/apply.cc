@@ -20,7 +20,7 @@ struct Replacement {
   fs::perms permissions = fs::perms::none;
 };
 
-/// For the super-user, too, who may write anything.
+/// Also checked for the super-user, who may write anything.
 bool is_read_only(const fs::path& target, fs::perms permissions) {
   constexpr auto kWrite = fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
   return (permissions & kWrite) == fs::perms::none || ::access(target.c_str(), W_OK) != 0;

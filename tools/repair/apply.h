@@ -5,8 +5,8 @@
 
 namespace parallax::tools {
 
-/// Writes the files of a proposal. Reports what cannot be written, or must not by the gate, before
-/// anything is.
+/// Writes the files of a proposal. Files that cannot be written, or that the gate forbids, are
+/// reported before anything is written.
 base::Status apply_proposal(const Proposal& proposal, const base::WriteGate& gate,
                             Context& context);
 

@@ -8,7 +8,7 @@
 
 namespace parallax::tools {
 
-/// What the plan is told of a failure, and what the binding table has to say for that.
+/// A failure as the plan is told of it, and the change of the binding table that this needs.
 struct BoundFailure {
   std::string words;                // a sentence
   std::optional<ChangedFile> file;  // none: the table knows the reason already

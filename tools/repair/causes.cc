@@ -11,7 +11,7 @@ namespace {
 
 using PathsById = std::map<std::string, const ObservedPath*>;
 
-/// Of the runs that get to the step of `failed` in the same way: does it happen there again?
+/// Does it happen again in the runs that get to the step of `failed` in the same way?
 RepairCause cause_at(const RepairInput& input, const Evidence& failed, const PathsById& by_id,
                      std::set<std::string>& told) {
   const auto t = *failed.divergence;
@@ -19,7 +19,7 @@ RepairCause cause_at(const RepairInput& input, const Evidence& failed, const Pat
   std::vector<bool> fails;
   for (const auto& other : input.evidence) {
     if (!goes_like(failed, other, t)) continue;
-    // What left the model there in another way says nothing of this one.
+    // Runs that left the model there in another way are no evidence for this one.
     const bool same = other.divergence == t && other.states[t] == failed.states[t];
     if (!same && other.divergence && *other.divergence <= t) continue;
     for (const auto& id : other.ids) {

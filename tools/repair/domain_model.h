@@ -14,19 +14,19 @@
 
 namespace parallax::tools {
 
-/// The texts of a scenario's model, parsed and checked, for edits to be made in them.
+/// The texts of a scenario's model, parsed and checked, as the basis of edits.
 struct DomainModel {
   base::SourceFiles files;  // of the model alone; the rest refers to it
   compiler::ModelAst ast;
   std::optional<compiler::TypedModel> typed;
   std::vector<compiler::AxiomForm> forms;
 };
-/// None where the texts are no right model any more; the scenario was loaded before, so that was
-/// reported.
+/// None where the texts are not a valid model any more; that was reported when the scenario was
+/// loaded.
 std::unique_ptr<DomainModel> load_domain(const harness::Scenario& scenario, const Context& context);
 
-/// The model that a text says, without plan and constraints, for this horizon. None: it is no right
-/// model; `why` is then the first thing that is wrong.
+/// Compiles the model in a text, without plan and constraints, for this horizon. None: it is not a
+/// valid model; `why` is then the first error.
 std::optional<compiler::CompiledModel> compile_text(const std::string& text, std::int64_t horizon,
                                                     const Context& context, std::string& why);
 

@@ -64,9 +64,9 @@ void EditSearch::find_occurrences() {
   }
 }
 
-/// What follows from the facts by the clauses up to `last` one by one. Events and states of a run
-/// settle nearly everything but the edits, so that its copy of the clauses stays small. False if
-/// they contradict each other.
+/// Unit propagation of the facts over the clauses up to `last`. Events and states of a run settle
+/// nearly everything but the edits, so that its copy of the clauses stays small. False if they
+/// contradict each other.
 bool EditSearch::propagate(std::vector<Literal> facts, Timepoint last,
                            std::vector<std::int8_t>& values) const {
   std::vector<std::uint32_t> false_literals(guarded_.clauses.size(), 0);
@@ -95,8 +95,8 @@ bool EditSearch::propagate(std::vector<Literal> facts, Timepoint last,
   return true;
 }
 
-/// The clauses up to `last` that `values` do not satisfy. What stands in them with one sign only,
-/// and is not `needed`, gets it.
+/// The clauses up to `last` that `values` do not satisfy. Pure literals in them that are not
+/// `needed` are set.
 std::vector<std::uint32_t> EditSearch::open_clauses(Timepoint last, const std::vector<bool>& needed,
                                                     std::vector<std::int8_t>& values) const {
   const auto is_open = [&](std::uint32_t c) {
@@ -127,7 +127,7 @@ std::vector<std::uint32_t> EditSearch::open_clauses(Timepoint last, const std::v
     for (const auto c : occurrences_[2 * variable + (positive ? 0 : 1)]) {
       if (guarded_.clause_timepoints[c] > last) continue;
       const auto clause = guarded_.clauses[c];
-      // It was open until now.
+      // Has this assignment satisfied the clause?
       const auto true_ones = std::count_if(
           clause.begin(), clause.end(), [&](Literal each) { return value_of(each, values) > 0; });
       if (true_ones != 1) continue;
@@ -150,7 +150,7 @@ void EditSearch::add(std::size_t number) {
   std::optional<std::size_t> refused;  // the step whose event the model may forbid
   const auto say = [&](const std::optional<Literal>& literal, bool value) {
     if (literal) facts.push_back(value ? *literal : ~*literal);
-    // What has no atom is false.
+    // An atom that the model does not have is false.
     if (!literal && value) require({~active});
   };
   const auto happens = [&](std::size_t i) {
@@ -190,7 +190,7 @@ void EditSearch::add(std::size_t number) {
     if (!here) here = circuit_.new_variable();
     return literal.is_positive() ? *here : ~*here;
   };
-  // An edit that cannot be made here is so for this copy alone.
+  // An edit that this copy excludes is excluded for this copy alone.
   for (std::size_t variable = 0; variable < fixed_.size(); ++variable) {
     if (!fixed_[variable] || values[variable] == 0) continue;
     require({~active, values[variable] > 0 ? *fixed_[variable] : ~*fixed_[variable]});

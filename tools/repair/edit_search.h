@@ -17,9 +17,9 @@
 
 namespace parallax::tools {
 
-/// Which edits make a model admit what was seen? One incremental solver with a selector for each
-/// edit and, for each way that runs went, a copy of the guarded model's clauses in which its events
-/// and states are said.
+/// Finds edits that make a model admit the observations. One incremental solver has a selector for
+/// each edit and, for each way that runs went, a copy of the guarded model's clauses in which its
+/// events and states are asserted.
 class EditSearch {
  public:
   static constexpr std::size_t kMostEdits = 3;  // at once
@@ -29,14 +29,14 @@ class EditSearch {
   EditSearch(const compiler::CompiledModel& guarded, const std::vector<compiler::Edit>& edits,
              const std::vector<Evidence>& evidence, const std::atomic<bool>& stop);
 
-  /// From now on that edit is in no set.
+  /// Excludes the edit from all sets from now on.
   void exclude(std::size_t edit) { require({~selector(edit)}); }
 
   struct Found {
     std::vector<std::vector<std::size_t>> sets;  // of edits, ascending
     bool complete = false;                       // there is no further one
   };
-  /// Sets of `size` edits, none of which contains a set that was found before.
+  /// Sets of `size` edits that contain no set that was found before.
   Found find(std::size_t size, std::size_t limit);
   /// One set of at most `size` edits for the clean runs and those failed ones alone.
   std::optional<std::vector<std::size_t>> find_for(const std::vector<std::size_t>& failed,

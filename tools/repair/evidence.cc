@@ -75,7 +75,7 @@ std::optional<std::vector<Literal>> Admission::facts(const Evidence& evidence, s
     const bool wanted = without != i;
     if (wanted && !happens) return std::nullopt;
     if (happens) out.push_back(wanted ? *happens : ~*happens);
-    // Of other events no more than what the model demands; in a trace there are none.
+    // Executed plans may have further events that the model demands; traces have none.
     for (const auto slot : evidence.executed ? undemanded_ : all_) {
       const auto literal = Literal::positive(model.variable(slot, t));
       if (!happens || literal != *happens) out.push_back(~literal);
@@ -113,7 +113,7 @@ Admission::Answer Admission::ask(const Evidence& evidence, std::optional<std::si
     }
     if (t == 0) answer.start = false;
     if (t == 0 || refuse_at != t - 1 || answer.stopped) return answer;
-    // Is it the event by itself that the model forbids in the state before?
+    // Does the model forbid the event by itself in the state before it?
     const auto with = facts(evidence, t, t, std::nullopt);
     if (with && session_.solve(static_cast<Timepoint>(t), *with) != SolveStatus::kUnsatisfiable) {
       return answer;

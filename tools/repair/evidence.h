@@ -13,7 +13,8 @@
 
 namespace parallax::tools {
 
-/// What recorded runs that went the same way have shown: by names, for models of other numberings.
+/// Observations of recorded runs that went the same way: by names, for models with other
+/// numberings.
 struct Evidence {
   struct Step {
     std::string event;
@@ -28,7 +29,7 @@ struct Evidence {
   std::vector<std::string> ids;  // of the runs: "1.4"; of experiments "e1.4"
   /// The first timepoint that the model cannot reach like that; none: it admits all of it.
   std::optional<std::size_t> divergence;
-  /// What came later is set aside: another run went the same way and failed.
+  /// Later observations are set aside: another run went the same way and failed.
   std::optional<std::size_t> until;
 
   std::size_t runs() const { return ids.size(); }
@@ -38,17 +39,17 @@ struct Evidence {
   std::size_t seen_to() const { return divergence.value_or(steps.size()); }
 };
 
-/// The paths, those that are alike as one, without their divergence. In the order of the first run
-/// of each.
+/// The paths as evidence, equal ones merged, without their divergence. In the order of the first
+/// run of each.
 std::vector<Evidence> evidence_of(const std::vector<ObservedPath>& paths,
                                   const compiler::CompiledModel& model);
 
-/// Adds that the first `states` states are as they were seen. False: one of them has a fluent that
-/// holds and that the model does not know.
+/// Adds literals for the first `states` observed states. False: one of them has a true fluent that
+/// the model does not know.
 bool add_states(const compiler::AtomIndex& index, const Evidence& evidence, std::size_t states,
                 std::vector<compiler::Literal>& out);
 
-/// Asks a model without a plan how much of what was seen it admits.
+/// Asks a model without a plan how far it admits the evidence.
 class Admission {
  public:
   /// The model, and `stop`, outlive the object.
@@ -58,16 +59,15 @@ class Admission {
     std::size_t reached = 0;  // the last timepoint up to which it goes
     bool start = true;        // it can begin like that
     bool whole = false;
-    /// Of the step at `refuse_at`: the model says that the event cannot happen, and goes on
-    /// without.
+    /// The model says that the event at step `refuse_at` cannot happen, and goes on without it.
     bool refused = false;
     bool stopped = false;
   };
   /// `refuse_at`: a step whose event the world refused, which the model may forbid.
   Answer ask(const Evidence& evidence, std::optional<std::size_t> refuse_at = std::nullopt);
 
-  /// The fluents seen at `t` that the model cannot have there, each by itself, after what was seen
-  /// before; all that were seen there where none of them is impossible by itself.
+  /// The fluents observed at `t` that are each impossible in the model after the observations
+  /// before; all fluents observed there if none of them is impossible by itself.
   Evidence::State impossible(const Evidence& evidence, std::size_t t);
 
  private:
@@ -82,7 +82,7 @@ class Admission {
   std::vector<std::uint32_t> undemanded_, all_;  // slots of events
 };
 
-/// What a simulator says of an action that its world cannot do at all.
+/// Does the reason say that the simulator's world cannot do the action at all?
 bool says_not_possible(const std::string& reason);
 
 }  // namespace parallax::tools

@@ -26,7 +26,7 @@ std::string experiment_key(const harness::CampaignTrace& trace) {
   return runtime::event_key(trace) + " from " + start_key(trace);
 }
 
-/// A model with the scenario's plan; without a compilation it can be no run of it.
+/// A model with the scenario's plan; without a compilation, no run can be of that model.
 struct ExperimentChooser::Model {
   std::optional<compiler::Compilation> compilation;
   std::optional<runtime::ComparedModel> compared;

@@ -18,36 +18,37 @@
 
 namespace parallax::tools {
 
-/// A simulation of the scenario's plan of which models foretell different things.
+/// A simulation of the scenario's plan for which models make different predictions.
 struct Experiment {
-  /// From its start to the first state in which they differ, as one of them has it. In closed loop
-  /// only the start is asked for: what happens is the plan's to say.
+  /// The trace from its start to the first state in which they differ, by one of the models. In
+  /// closed loop only the start is requested: the plan decides the rest.
   harness::CampaignTrace trace;
   std::size_t separated = 0;  // pairs of models
 };
 /// "Go(r2);PickUp(); from Parked();RobotAt(r1)": the same for the same simulation.
 std::string experiment_key(const harness::CampaignTrace& trace);
-/// Its start alone.
+/// A key of its start alone.
 std::string start_key(const harness::CampaignTrace& trace);
 
 /// Looks for simulations that tell models apart. Each model is compiled with the scenario's plan,
-/// as it is run. A pair is told apart by a trace that one of the two has and the other has not, on
-/// what is observed, which one solver call finds; every other model is then asked about that trace,
-/// too. Models that no trace tells apart are remembered as one.
+/// as it is run. A pair is told apart by a trace that, by its observations, only one of the two
+/// has; one solver call finds it, and every other model is then asked about that trace, too. Models
+/// that no trace tells apart are remembered as one.
 class ExperimentChooser {
  public:
   /// `loaded` and `context` outlive the object.
   ExperimentChooser(const ScenarioModel& loaded, Context& context);
   ~ExperimentChooser();
 
-  /// Of the traces found (one at least for every pair that can be told apart) the one that tells
-  /// most pairs of `models` apart; among equals the shortest, then the first by its key. None: no
-  /// trace of the plan tells any of them apart, all that do are not `usable`, or it was stopped.
+  /// Chooses the trace that tells most pairs of `models` apart, among the traces found (at least
+  /// one for every pair that can be told apart); among equals the shortest, then the first by its
+  /// key. None: no trace of the plan tells any of them apart, all that do are not `usable`, or it
+  /// was stopped.
   std::optional<Experiment> choose(
       const std::vector<std::string>& models,
       const std::function<bool(const harness::CampaignTrace&)>& usable);
 
-  /// Is it known of these that no trace tells them apart?
+  /// Is it known that no trace tells these two apart?
   bool are_same(const std::string& first, const std::string& second) const;
 
  private:
@@ -56,7 +57,7 @@ class ExperimentChooser {
 
   std::size_t number_of(const std::string& text);
   std::size_t same_as(std::size_t model) const;
-  /// Traces of the first that are none of the second.
+  /// Finds traces of the first model that the second one does not have.
   void find(Pair pair, const std::function<bool(const harness::CampaignTrace&)>& usable,
             std::map<std::string, harness::CampaignTrace>& found);
   bool admits(Model& model, const harness::CampaignTrace& trace) const;

@@ -11,7 +11,8 @@
 namespace parallax::tools {
 namespace {
 
-/// Of one experiment: what is open in a world shows, and what is not is not tried for ever.
+/// Most samples of one experiment: enough for the open outcomes of the world to show, and a bound
+/// where nothing is open.
 constexpr std::int64_t kMostInModel = 5, kMostInPhysics = 20;
 constexpr const char* kTarget = "to tell proposals of repair apart";
 

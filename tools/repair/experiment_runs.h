@@ -28,13 +28,14 @@ class ExperimentRuns {
 
   /// Simulations on record.
   std::int64_t made() const { return static_cast<std::int64_t>(runs_->samples().size()); }
-  /// May it be made once more? Not if it was often enough, or the simulator cannot begin there.
+  /// May it be repeated? Not after the maximum number of samples, or if the simulator cannot begin
+  /// there.
   bool usable(const harness::CampaignTrace& trace) const;
 
   /// Completes a batch that was ended early, within the budget. False as of ExtraRuns::make.
   base::Result<bool> complete(std::int64_t budget);
-  /// A batch of it, within the budget. False also if it turned out that the simulator cannot begin
-  /// there, which `usable` says from now on.
+  /// Makes a batch of it, within the budget. Also false if it turned out that the simulator cannot
+  /// begin there, which `usable` then takes into account.
   base::Result<bool> make(const Experiment& experiment, std::int64_t budget);
   base::Status close() { return runs_->close(); }
 

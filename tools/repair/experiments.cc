@@ -46,7 +46,7 @@ class Experiments {
   }
 
  private:
-  /// Makes what tells the likeliest proposals apart, until nothing is left to be told apart.
+  /// Makes experiments that tell the likeliest proposals apart, until no two can be told apart.
   base::Status tell_apart(RepairResult& result) {
     if (!may_be_made(result)) return base::Unit{};
     const bool on_record = first_.experiments > 0;
@@ -74,8 +74,8 @@ class Experiments {
     return base::Unit{};
   }
 
-  /// Where chance decides in the world, what went wrong once may go well the next time: what is
-  /// proposed for what happens always is no answer then.
+  /// Repeats steps where chance may decide: if an event that went wrong once can also go well, a
+  /// proposal that it always fails is wrong.
   base::Status repeat() {
     if (!chance_decides(first_) || !forbidden().empty()) return base::Unit{};
     std::int64_t made = 0;
@@ -115,7 +115,8 @@ class Experiments {
                                                : "no run of this plan tells them apart";
   }
 
-  /// Why there is no further experiment: that no run tells is said where it was shown.
+  /// Why there is no further experiment: no run can tell them apart, if that was proved, or the
+  /// search stopped at its limits.
   std::string why_none(const std::vector<std::string>& models) const {
     for (const auto& text : models) {
       if (!chooser_.are_same(models.front(), text)) {
@@ -126,7 +127,7 @@ class Experiments {
     return nothing_tells();
   }
 
-  /// Why none are made is told where it matters.
+  /// Sets the reason only where experiments would have been needed.
   bool may_be_made(RepairResult& result) {
     if (contenders(result).size() < 2 || context_.stopped()) return false;
     result.why_tied = forbidden();
@@ -149,7 +150,7 @@ class Experiments {
     return "";
   }
 
-  /// The models of those that the runs speak for as much as for the first.
+  /// The models of the proposals that the runs support as much as the first one.
   std::vector<std::string> contenders(const RepairResult& result) {
     std::vector<std::string> out;
     if (result.proposals.empty()) return out;
@@ -186,7 +187,7 @@ class Experiments {
     return base::Unit{};
   }
 
-  /// What an earlier repair was at when it was ended.
+  /// Completes the runs that an earlier repair was making when it ended.
   base::Status complete(RepairResult& result) {
     const auto before = runs_->made();
     const auto made = runs_->complete(budget());
@@ -219,7 +220,7 @@ class Experiments {
     return base::Unit{};
   }
 
-  /// Changes of the plan start from the repairs of the model that are left.
+  /// Changes of the plan start from the remaining repairs of the model.
   base::Result<RepairResult> with_plan(RepairResult result) {
     if (!options_.plan) return result;
     auto& input = last_ ? *last_ : first_;
@@ -233,8 +234,8 @@ class Experiments {
     bool precaution = false;
   };
 
-  /// Does it not explain the runs that were made, or not as far as the first one does? Else it was
-  /// crowded out by others, as no more than some are looked at.
+  /// Is it refuted: does it not explain the new runs, or not as far as the first one does? If not,
+  /// it was crowded out by others, as the number of proposals is limited.
   bool is_refuted(const std::string& text, const Contender& contender,
                   const std::vector<Proposal>& left) const {
     auto seen = (last_ ? *last_ : first_).evidence;
@@ -249,7 +250,7 @@ class Experiments {
     for (const auto& [text, contender] : contenders_) {
       const bool left = std::any_of(all.begin(), all.end(),
                                     [&](const Proposal& each) { return each.text == text; });
-      // What a search that was stopped has not come to again is not refuted.
+      // A proposal that a stopped search has not found again is not refuted.
       if (left || context_.stopped()) continue;
       (is_refuted(text, contender, all) ? result.refuted : result.crowded_out)
           .push_back(contender.words);

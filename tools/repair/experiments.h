@@ -12,8 +12,8 @@
 namespace parallax::tools {
 
 struct ExperimentOptions {
-  /// At most so many simulations, counted with those made earlier; none: kRunsInModel where the
-  /// world is a model, else kRunsInPhysics. 0: none are made.
+  /// Limit on simulations, counted with those made earlier; none: kRunsInModel where the world is a
+  /// model, else kRunsInPhysics. 0: none are made.
   std::optional<std::int64_t> runs;
   std::int64_t jobs = 1;
   bool allow_commands = false;  // the scenario's simulator may be one
@@ -22,9 +22,9 @@ struct ExperimentOptions {
 };
 inline constexpr std::int64_t kRunsInModel = 60, kRunsInPhysics = 24;
 
-/// Proposes repairs, and where several are founded as well as the first one: makes the simulation
-/// that tells most of them apart, records it in RUN_DIR/experiments, and proposes again, until
-/// nothing is left to be told apart. Reports what propose_repairs and the simulator report.
+/// Proposes repairs. Where several are as well founded as the first one, makes the simulation that
+/// tells most of them apart, records it in RUN_DIR/experiments, and proposes again, until no two
+/// can be told apart. Reports what propose_repairs and the simulator report.
 base::Result<RepairResult> repair_with_experiments(const RepairOptions& options,
                                                    const ExperimentOptions& experiments,
                                                    Context& context);

@@ -28,7 +28,7 @@ class Starts {
     }
   }
 
-  /// One that leads there, within the horizon. None: there is none, or it was stopped.
+  /// An initial state that leads there, within the horizon. None: there is none, or it was stopped.
   bool find(const std::vector<Literal>& start) {
     for (Timepoint n = 0; n <= session_.model().horizon; ++n) {
       const auto hit = index_.hit(n);

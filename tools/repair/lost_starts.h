@@ -12,12 +12,12 @@ namespace parallax::tools {
 /// another.
 struct LostStarts {
   std::size_t lost = 0, of = 0;
-  bool more = false;  // there are further ones that were not looked at
+  bool more = false;  // there are further ones that were not examined
   std::string first;  // of those that are lost: what holds there
 };
 
-/// Both models have constraints. A state is taken for the same where the fluents that both know are
-/// alike. Cost: a solver call for each state and length, for 200 states at most.
+/// Both models have constraints. Two states are the same if the fluents that both models know
+/// agree. Cost: a solver call for each state and length, for 200 states at most.
 LostStarts lost_starts(const compiler::CompiledModel& before, const compiler::CompiledModel& after,
                        const std::atomic<bool>& stop);
 

@@ -37,7 +37,7 @@ std::optional<compiler::TextChange> mapping_line(const harness::FluentBinding& b
     if (at > 0 && (text[at - 1] == '"' || text[at - 1] == '\'')) --at;
     return compiler::TextChange{key.file, at, at, entry + ", "};
   }
-  // What is indented more belongs to the entry; blank lines and comments behind it do not.
+  // Lines that are indented more belong to the entry; blank lines and comments after it do not.
   auto end = own.end;
   for (auto at = own.end; at < text.size();) {
     const auto line = line_at(text, at + 1);

@@ -8,8 +8,8 @@
 
 namespace parallax::tools {
 
-/// Puts an entry, `KEY: VALUE`, into the `mapping` of a scenario file, behind the one for `beside`,
-/// as the file is laid out. None: the scenario binds that fluent by its name alone.
+/// Adds an entry, `KEY: VALUE`, to the `mapping` of a scenario file, after the one for `beside`, in
+/// the file's layout. None: the scenario binds that fluent by its name alone.
 std::optional<compiler::TextChange> mapping_line(const harness::FluentBinding& beside,
                                                  const std::string& entry,
                                                  const base::SourceFiles& files);

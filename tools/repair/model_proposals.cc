@@ -31,15 +31,16 @@ class ModelSearch {
   FoundProposals run() {
     if (input_.contradictions.empty()) {
       search_all(Mode::kExact);
-      // Last of all that what happens is open: of one run, too, that tried twice and saw both.
+      // As a last resort, leaves the outcome open: even for one run that tried twice and saw both
+      // outcomes.
       if (result_.proposals.empty() && !context_.stopped()) search(Mode::kOpen, 1);
     } else {
       cautious_ = evidence_;
-      // Where none of those that failed was refused by the world it would be no precaution.
+      // Not a precaution unless the world refused the event in some failed run.
       if (set_aside(evidence_, cautious_) && !search(Mode::kCautious, 1) && !context_.stopped()) {
         search(Mode::kCautious, 2);
       }
-      // Then what is right about all runs.
+      // Then models that admit all runs.
       for (std::size_t size = 1; size <= EditSearch::kMostEdits && !context_.stopped(); ++size) {
         if (search(Mode::kOpen, size)) break;
       }
@@ -49,7 +50,7 @@ class ModelSearch {
   }
 
  private:
-  /// How runs are taken that went the same way and ended differently.
+  /// Treatment of runs that went the same way and ended differently.
   enum class Mode : std::uint8_t {
     kExact,     // there are none
     kCautious,  // those that went well are set aside from there on
@@ -64,15 +65,15 @@ class ModelSearch {
     return out;
   }
 
-  /// First what the steps themselves are about, then what led there; more edits last.
+  /// First edits about the steps themselves, then about earlier steps; more edits last.
   void search_all(Mode mode) {
     if (search(mode, 1)) {
       const bool open = std::all_of(result_.proposals.begin(), result_.proposals.end(),
                                     [](const Proposal& each) { return each.open; });
-      // That anything may happen is no answer where something says what does.
+      // An open outcome is no answer where a condition determines it.
       if (open && !context_.stopped() && search(Mode::kEither, 1)) return;
-      // A missing effect has its condition at once, if that tells more of the runs, or says with
-      // variables what else takes constants.
+      // Adds a condition to a missing effect if that explains more runs, or replaces constants by
+      // variables.
       const auto best = most_whole();
       if (best == input_.runs || context_.stopped()) return;
       only_constants_ ? search(mode, 2, std::nullopt, true) : search(mode, 2, best);
@@ -110,7 +111,7 @@ class ModelSearch {
     out.open_refused = mode == Mode::kExact;
     out.alternatives = mode == Mode::kEither;
     if (!wide) return out;
-    // What the axioms of the steps ask for may be what went wrong before.
+    // The mistake may be in any fluent that the axioms of the earlier steps mention.
     for (const auto& symbol : domain_.typed->symbols) {
       if (symbol.kind == compiler::SymbolKind::kFluent && !symbol.noninertial) {
         out.more_fluents.insert(symbol.name);
@@ -119,7 +120,8 @@ class ModelSearch {
     return out;
   }
 
-  /// Also behind the parting: it tells what an event does, if not what the model says of it.
+  /// Also counts changes after the parting: they tell what an event does, if not what the model
+  /// says of it.
   static void add_changed(const Evidence& seen, EditScope& scope) {
     for (std::size_t t = 0; t + 1 < seen.states.size(); ++t) {
       for (const auto& [fluent, holds] : seen.states[t + 1]) {
@@ -131,7 +133,7 @@ class ModelSearch {
     }
   }
 
-  /// What was seen behind the step as the model says, only later.
+  /// The differing fluents that came as the model says, but at a later step.
   static std::vector<EditScope::Step::Late> late(const RunParting& parting, const Evidence& seen) {
     constexpr std::size_t kLatest = 3;  // steps
     std::vector<EditScope::Step::Late> out;
@@ -150,8 +152,8 @@ class ModelSearch {
     return out;
   }
 
-  /// True if there are proposals that admit more than `whole` runs to their end; `conditional`: of
-  /// effects with a condition alone.
+  /// True if there are proposals that admit more than `whole` runs to their end; `conditional`:
+  /// only effects with a condition.
   bool search(Mode mode, std::size_t size, std::optional<std::size_t> whole = std::nullopt,
               bool conditional = false) {
     const auto& evidence = mode == Mode::kCautious ? cautious_ : evidence_;
@@ -188,8 +190,8 @@ class ModelSearch {
     std::optional<compiler::CompiledModel> model;
   };
 
-  /// What is taken to fail is asked of the model in which outcomes may be open, too: it is compiled
-  /// once, which takes longer than all that is asked.
+  /// The edits and the compiled model of a mode. kCautious shares those of kOpen: compiling takes
+  /// longer than all queries together.
   std::shared_ptr<const Guarded> guarded(Mode mode) {
     auto& known = guarded_[mode == Mode::kCautious ? Mode::kOpen : mode];
     if (known) return known;
@@ -218,13 +220,13 @@ class ModelSearch {
            (edit.kind == Edit::Kind::kAddEffect && edit.text.starts_with("Releases"));
   }
 
-  /// Of a model that is too large with all edits: without conditions of new effects, then the less
-  /// odd half. False: there are few.
+  /// Reduces the edits of a model that is too large: drops conditions of new effects, then the
+  /// odder half. False: there are too few already.
   static bool fewer(std::vector<Edit>& edits) {
     constexpr std::size_t kFew = 50;
     if (edits.size() <= kFew) return false;
     const auto before = edits.size();
-    // What is left refers to no other edit, so that it may be put in order.
+    // The remaining edits refer to no others, so that they may be sorted.
     std::erase_if(edits, [](const Edit& edit) { return edit.kind == Edit::Kind::kAddCondition; });
     if (edits.size() < before) return true;
     std::stable_sort(edits.begin(), edits.end(),
@@ -240,7 +242,8 @@ class ModelSearch {
     return evidence;
   }
 
-  /// Far from the step conditions are dropped and effects mended, not invented: there are too many.
+  /// Far from the step, conditions are only dropped and effects only mended: there are too many new
+  /// ones.
   static void keep_few(std::vector<Edit>& edits) {
     constexpr std::size_t kMostWide = 600;
     using Kind = Edit::Kind;
@@ -290,7 +293,7 @@ class ModelSearch {
       }
       if (whole && proposal.verdict.runs_whole <= *whole) continue;
       proposal.precaution = mode == Mode::kCautious;
-      // An effect and one condition are one axiom.
+      // An effect with one condition counts as one edit, as it is one axiom.
       proposal.size = set.size();
       for (const auto edit : set) {
         if (edits[edit].kind != Edit::Kind::kAddCondition) continue;
@@ -319,7 +322,7 @@ class ModelSearch {
     return any;
   }
 
-  /// What the plan is told where the world refused the event that may fail now.
+  /// Adds what the plan is told where the world refused the event that may fail now.
   void tell_failures(const std::string& event, Proposal& proposal) const {
     std::set<std::string> told;
     for (const auto& parting : input_.partings) {

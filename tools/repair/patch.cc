@@ -120,7 +120,7 @@ std::string unified_diff(const std::vector<ChangedFile>& files, const fs::path& 
   for (const auto& file : files) {
     const auto name =
         base::printable(real_path(folder / file.name).lexically_relative(top).generic_string());
-    // git takes what follows a blank for a time, but for a tab.
+    // git takes the text after a blank for a time, unless a tab ends the name.
     const auto* end = name.find(' ') == std::string::npos ? "\n" : "\t\n";
     out += "--- a/" + name + end + "+++ b/" + name + end + hunks(file.before, file.after);
   }

@@ -18,9 +18,9 @@ struct ChangedFile {
 std::vector<ChangedFile> changed_files(const base::SourceFiles& files,
                                        const std::vector<compiler::TextChange>& changes);
 
-/// Where the names in a patch of these files begin, seen from `folder`, an absolute path: ".", if
-/// they all lie below it, as `git apply` asks for; else the top of the git repository that has them
-/// all, as "../.."; else "/".
+/// The folder that the names in a patch of these files are relative to, seen from `folder`, an
+/// absolute path: ".", if they all lie below it, as `git apply` requires; else the top of the git
+/// repository that has them all, as "../.."; else "/".
 std::string patch_folder(const std::vector<ChangedFile>& files,
                          const std::filesystem::path& folder);
 

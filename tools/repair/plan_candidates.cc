@@ -60,7 +60,8 @@ std::vector<std::string> actions_of_entry(const PlanScope& scope, const BindingE
   std::vector<std::map<std::string, std::string>> ways = {{}};
   for (std::size_t i = 0; i < entry.event_arguments.size(); ++i) {
     const auto& variable = entry.event_arguments[i].text;
-    // Of a mapping function's argument the plan's own actions are copied.
+    // An entry with an argument of a mapping function gives no actions: the plan's own ones are
+    // copied instead.
     if (!variable.starts_with('?')) return {};
     std::vector<std::map<std::string, std::string>> more;
     for (const auto& way : ways) {
@@ -195,14 +196,14 @@ void add_symbols(const compiler::Ast& ast, compiler::NodeId root, std::set<std::
   }
 }
 
-/// A formula of these symbols says something of what happens, not of states alone.
+/// Does a formula with these symbols concern events, not states alone?
 bool is_dynamic(const std::set<std::string>& symbols) {
   constexpr std::string_view kDynamic[] = {"Happens", "Initiates", "Terminates", "Releases"};
   return std::any_of(std::begin(kDynamic), std::end(kDynamic),
                      [&](auto name) { return symbols.contains(std::string(name)); });
 }
 
-/// The symbols in what the axioms of the event ask for.
+/// The symbols in the conditions of the event's axioms.
 std::set<std::string> asked_by(const compiler::ModelAst& ast,
                                const std::vector<compiler::AxiomForm>& forms,
                                const std::string& event) {
@@ -229,14 +230,14 @@ std::set<std::string> events_that_matter(const std::string& model, const std::st
   if (!ast || !old) return {};
   const auto forms = compiler::axiom_forms(*ast, files);
   auto asked = asked_by(*ast, forms, event);
-  // What the model asked for before was the case: it said that the step would go well.
+  // Leaves out what the original model asks for already: it predicted that the step would go well.
   if (!wide) {
     for (const auto& name : asked_by(*old, compiler::axiom_forms(*old, files), event)) {
       asked.erase(name);
     }
   }
   asked.insert(fluents.begin(), fluents.end());
-  // What a defined fluent is defined by matters as it does.
+  // Fluents that define a relevant fluent are relevant, too.
   const auto define = [&] {
     for (std::size_t before = 0; before != asked.size();) {
       before = asked.size();

@@ -12,7 +12,7 @@
 
 namespace parallax::tools {
 
-/// Where and about what a plan may be edited.
+/// The places at which a plan may be edited, and the objects of the edits.
 struct PlanScope {
   const compiler::PlanText* plan = nullptr;
   const compiler::PlanBinding* binding = nullptr;
@@ -29,13 +29,13 @@ std::vector<compiler::PlanEdit> plan_insertions(const PlanScope& scope,
                                                 const std::set<std::string>& events);
 std::vector<compiler::PlanEdit> plan_moves(const PlanScope& scope,
                                            const std::set<std::string>& events);
-/// What is put around the failing forms.
+/// Guards and handlers around the failing forms.
 std::vector<compiler::PlanEdit> plan_guards(const PlanScope& scope);
 std::vector<compiler::PlanEdit> plan_handlers(const PlanScope& scope);
 
-/// The events that have an effect on what the axioms of `event` ask for in a model and did not in
-/// the original one, or on `fluents`; `wide`: on all that they ask for, and on what the axioms of
-/// those events ask for. Of the noninertial fluents `defined` what they are defined by counts.
+/// The events with an effect on conditions of `event` that the model has and the original one had
+/// not, or on `fluents`; `wide`: on all conditions of `event`, and on those of these events. For
+/// noninertial fluents in `defined`, the fluents of their definitions count.
 std::set<std::string> events_that_matter(const std::string& model, const std::string& original,
                                          const std::string& event,
                                          const std::set<std::string>& fluents,

@@ -17,7 +17,7 @@ using runtime::SolveStatus;
 std::unique_ptr<PlanModel> PlanModel::compile(const harness::Scenario& scenario,
                                               const EditedTexts& texts, Context& context,
                                               Wrong& wrong) {
-  // What is said of an edited text is not reported; the scenario's texts are those of the context.
+  // Errors of edited texts are not reported; the scenario's texts are those of the context.
   const auto before = context.sink();
   context.sink() = base::DiagnosticSink();
   auto compiled = compile_edited(scenario, texts, context);
@@ -64,7 +64,7 @@ std::vector<LocationId> PlanModel::locations(const Evidence& evidence, std::size
   if (!facts || static_cast<Timepoint>(t) > horizon()) return out;
   const auto& graph = this->graph();
   auto wanted = *facts;
-  // Of the ways that the plan can have gone one that comes to this event now.
+  // Requires that the plan has come to a perform of this event.
   std::vector<Literal> here;
   const auto symbol = compiler::symbol_of(evidence.steps[t].event);
   const auto guard = session_.new_variable();
@@ -115,7 +115,7 @@ void PlanModel::set_bad(const BadStep& bad) {
       if (possible) add(std::move(all));
       continue;
     }
-    // What the world refused is refused again: the perform does not succeed.
+    // The world refuses the event again: the perform does not succeed.
     for (std::uint32_t i = 0; i < graph().locations.size(); ++i) {
       if (graph().locations[LocationId(i)].event_symbol != symbol) continue;
       const compiler::PlanStepId step(i);

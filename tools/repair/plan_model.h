@@ -20,11 +20,11 @@ namespace parallax::tools {
 struct BadStep {
   Evidence::Step step;
   Evidence::State seen;  // behind it, unlike what the model says
-  /// Not empty: the step is bad wherever these hold in front of it, whatever comes of it.
+  /// Not empty: the step is bad wherever these hold before it, whatever its outcome.
   Evidence::State where = {};
 };
 
-/// What an execution of a plan is to come to.
+/// Goal that an execution of a plan has to reach.
 struct PlanGoal {
   bool constraints = false;  // a state in which the constraints hold
   bool done = false;         // the end of the plan
@@ -32,13 +32,13 @@ struct PlanGoal {
   bool any() const { return constraints || done; }
 };
 
-/// A model and a plan, compiled together, that are asked for executions.
+/// A model and a plan, compiled together, to be queried for executions.
 class PlanModel {
  public:
   using Literals = std::vector<runtime::Literal>;
 
-  /// The scenario with these texts. None where they are no right model or plan: `why`, and the
-  /// places of the errors.
+  /// Compiles the scenario with these texts. None where they are not a valid model or plan: `why`,
+  /// and the places of the errors.
   struct Wrong {
     std::string why;
     std::vector<base::SourceRange> places;
@@ -53,12 +53,13 @@ class PlanModel {
   runtime::SolverSession& session() { return session_; }
   compiler::Timepoint horizon() const { return compilation_.model.horizon; }
 
-  /// That an execution begins like that one. None: it cannot.
+  /// Literals for: an execution begins like the evidence. None: it cannot.
   std::optional<Literals> start(const Evidence& evidence) const;
-  /// That it goes like that one for so many steps, through so many states.
+  /// Literals for: it goes like the evidence for this number of steps, through this number of
+  /// states.
   std::optional<Literals> like(const Evidence& evidence, std::size_t steps,
                                std::size_t states) const;
-  /// The performs of an execution that goes like that one up to `t`, that at `t` included.
+  /// The performs of an execution that goes like the evidence up to `t`, including the one at `t`.
   std::vector<compiler::LocationId> locations(const Evidence& evidence, std::size_t t);
 
   /// From now on `clean()` means that no step of an execution is a bad one.
@@ -67,11 +68,12 @@ class PlanModel {
   /// Some execution has a bad step. None: the solver was stopped.
   std::optional<bool> can_be_bad();
 
-  /// An execution of `n` steps of which `facts` hold and that comes to the goal, behind `after`.
+  /// Solves for an execution of `n` steps that satisfies `facts` and reaches the goal after
+  /// timepoint `after`.
   runtime::SolveStatus solve(const PlanGoal& goal, compiler::Timepoint n, Literals facts,
                              std::size_t after = 0);
-  /// An execution of at most `horizon` steps, with more than `after`, of which `facts` hold and
-  /// that comes to the goal. None: the solver was stopped. The valuation is that of `length()`.
+  /// Is there an execution of more than `after` and at most `horizon` steps that satisfies `facts`
+  /// and reaches the goal? None: the solver was stopped. The valuation is that of `length()`.
   std::optional<bool> reaches(const PlanGoal& goal, const Literals& facts, std::size_t after = 0);
   compiler::Timepoint length() const { return length_; }
   const compiler::AtomIndex& index() const { return index_; }

@@ -24,7 +24,7 @@ constexpr std::size_t kMostTogether = 48;  // edits that are written into one pl
 constexpr std::size_t kMostTried = 5;      // of them are compiled from their text
 constexpr std::size_t kMostKept = 3;       // proposals for each model
 
-/// How the world is taken to be.
+/// An assumption about the world.
 struct World {
   std::string text;      // of the model
   std::size_t rank = 0;  // of the proposal that says so; 0: the model as it is
@@ -44,9 +44,9 @@ class PlanRepair {
       if (context_.stopped() || known.size() == kMostSteps) break;
       if (known.insert(parting.step.event).second) repair(parting);
     }
-    // The best for each way that the world may be, then the second ones.
+    // The best for each assumption about the world, then the second ones.
     std::stable_sort(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) {
-      // What only hides a failure comes last, however small it is.
+      // Changes that only hide a failure come last, however small they are.
       return std::tuple(a.proposal.hides_failure, a.proposal.size, a.kind, a.round) <
              std::tuple(b.proposal.hides_failure, b.proposal.size, b.kind, b.round);
     });
@@ -82,16 +82,17 @@ class PlanRepair {
     Proposal proposal;
     int kind = 0;
     std::vector<compiler::TextChange> changes;  // of the plan
-    /// What is around the step: the order does not ask for its traces.
+    /// The change is around the step: the order does not consider its traces.
     bool around() const { return kind >= static_cast<int>(PlanEdit::Kind::kRetry); }
   };
   struct Kept {
     Proposal proposal;
     int kind = 0;
-    std::size_t round = 0;  // so many better ones there are for the same world
+    std::size_t round = 0;  // number of better ones for the same world
   };
 
-  /// Looks for what helps in that world, if the plan is any the worse for its being like that.
+  /// Looks for changes that help in that world, if the plan is the worse for the world being like
+  /// that.
   void look(const World& world) {
     step_.task.model = world.text;
     step_.task.bad.where = world.rank == 0 ? step_.differing : Evidence::State{};
@@ -110,12 +111,12 @@ class PlanRepair {
       fluents.insert(compiler::symbol_of(fluent));
     std::vector<Tried> tried;
     const auto event = compiler::symbol_of(step_.task.bad.step.event);
-    // Of an event that never went well nothing tells what it needs.
+    // Nothing tells what an event needs that never went well.
     for (const bool wide : {false, true}) {
       if (!step_.went_well) break;
       auto events = events_that_matter(world.text, input_.text, event, fluents, defined, wide);
       auto edits = plan_moves(step_.scope, events);
-      // What is inserted is to make the step possible, not to take its place.
+      // An insertion makes the step possible; it must not take its place.
       events.erase(event);
       for (auto& edit : plan_insertions(step_.scope, events)) edits.push_back(std::move(edit));
       // Two together are looked for where the step is alone.
@@ -132,8 +133,8 @@ class PlanRepair {
     keep(world, *before, std::move(tried));
   }
 
-  /// So many at once: a plan that has too many in it becomes too large. Those that are nearest to
-  /// the step come first, and what lies further away is not looked at where one of them helps.
+  /// Tries kMostTogether edits at once: a plan with too many in it becomes too large. Those nearest
+  /// to the step come first; the others are skipped if one of them helps.
   void try_edits(const World& world, const std::vector<PlanEdit>& edits, bool handles,
                  std::size_t most, PlanModel& before, std::vector<Tried>& out) {
     found_.edits += edits.size();
@@ -171,7 +172,7 @@ class PlanRepair {
       if (!careful) continue;
       const auto plain = out.size();
       try_text(world, *careful, handles, before, out);
-      // The condition stands there only if it keeps something from changing.
+      // Keeps the condition only if fewer traces change with it.
       if (out.size() < 2 || out.size() == plain) continue;
       const auto last = out.end() - 1;
       if (words_of(chosen) != (last - 1)->proposal.words) continue;
@@ -179,8 +180,8 @@ class PlanRepair {
     }
   }
 
-  /// The insertion only where there is something to do: where what it undoes is as it was when the
-  /// step went wrong.
+  /// The insertion with a condition: only where a fluent that it undoes has the value that it had
+  /// when the step went wrong.
   std::optional<std::vector<PlanEdit>> with_condition(std::vector<PlanEdit> edits,
                                                       const PlanChoice& choice) const {
     if (edits.size() != 1 || edits.front().kind != PlanEdit::Kind::kInsert) return std::nullopt;
@@ -205,7 +206,7 @@ class PlanRepair {
     return words;
   }
 
-  /// Traces that are others.
+  /// Number of traces that change.
   static mpz_class changed(const Tried& each) {
     const auto& effects = each.proposal.effects;
     mpz_class sum = 0;
@@ -214,8 +215,8 @@ class PlanRepair {
     return sum;
   }
 
-  /// With the model as it is the plan must have that execution, too, or nobody can run it. That is
-  /// the same for each way that the world may be.
+  /// The plan must have that execution with the original model, too, or nobody can run it. That is
+  /// the same for each assumption about the world.
   bool can_be_run(const std::vector<compiler::TextChange>& changes) {
     std::string key = step_.task.goal.event;
     for (const auto& file : changed_files(source_->text.files(), changes)) {
@@ -326,14 +327,14 @@ class PlanRepair {
     out.gained = number(difference.gained);
   }
 
-  /// The best of one world: what does the step before what goes on without it, then what changes
-  /// the fewest traces.
+  /// Keeps the best for one assumption about the world: changes that perform the step before those
+  /// that go on without it, then those that change the fewest traces.
   void keep(const World& world, PlanModel& before, std::vector<Tried> tried) {
     std::stable_sort(tried.begin(), tried.end(), [](const Tried& a, const Tried& b) {
       if (a.proposal.hides_failure != b.proposal.hides_failure) return b.proposal.hides_failure;
       if (a.proposal.size != b.proposal.size) return a.proposal.size < b.proposal.size;
       if (a.kind != b.kind) return a.kind < b.kind;
-      // Of retries and handlers the innermost takes the least.
+      // The innermost of several retries or handlers takes the least.
       if (a.around()) return a.proposal.oddity < b.proposal.oddity;
       const auto left = changed(a), right = changed(b);
       return left != right ? left < right : a.proposal.oddity < b.proposal.oddity;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kMostRounds = 12;  // of leaving out edits that make no plan
 
-/// At most `bound` of them are true: a clause for each set of one more.
+/// At most `bound` of the literals are true, by Sinz's sequential counter.
 Literal at_most(runtime::SolverSession& session, const std::vector<Literal>& literals,
                 std::size_t bound) {
   // Sinz 2005: reached[j] is implied by "of those so far more than j are true".
@@ -107,7 +107,7 @@ class PlanEditSearch {
           ++n;
           continue;
         }
-        // Without any edit it goes well: there is nothing to look for.
+        // It goes well without any edit: there is nothing to look for.
         if (size == 0) return {};
         out.push_back(read(n));
         if (out.size() == limit) return out;
@@ -128,7 +128,7 @@ class PlanEditSearch {
     for (std::size_t i = 0; i < used_.size(); ++i) {
       const auto literal =
           model_->index().find(AtomKind::kHoldsAt, compiler::plan_edit_fluent(i) + "()", 0);
-      // One that nothing asks for stays unused.
+      // An edit that the model does not mention stays unused.
       if (literal) selectors_.push_back(*literal);
       if (literal) numbers_.push_back(i);
     }
@@ -169,7 +169,7 @@ class PlanEditSearch {
     return out;
   }
 
-  /// What the performs of the inserted action change.
+  /// Collects the changes of fluents by performs of the inserted action.
   void add_undone(std::size_t edit, Timepoint length, PlanChoice& out) const {
     const auto& graph = model_->graph();
     auto& session = model_->session();

@@ -10,11 +10,12 @@
 
 namespace parallax::tools {
 
-/// Edits of a plan that may help, found by a solver in one compiled plan that has all of them in
-/// it, each behind a question of its own.
+/// Edits of a plan that help, found by a solver in one compiled plan that contains all candidates,
+/// each behind a guard of its own.
 struct PlanChoice {
   std::vector<std::size_t> edits;
-  /// Of an insertion that was found: fluents that what is done there changes, as they were before.
+  /// For an insertion that was found: the fluents that its actions change, with their values
+  /// before.
   std::vector<std::pair<std::string, bool>> undone;
 };
 

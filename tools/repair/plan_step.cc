@@ -30,7 +30,7 @@ base::SourceRange in_own_text(const base::SourceRange& source, const compiler::P
   return source;
 }
 
-/// What held in front of the step where it went wrong, and never where it went well.
+/// Finds values of fluents before the failing step that they never had where the event went well.
 void find_difference(const RepairInput& input, PlanStep& step) {
   const auto& failing = step.task.evidence->states[step.task.step];
   auto out = failing;

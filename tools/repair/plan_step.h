@@ -18,7 +18,7 @@ struct PlanSource {
   compiler::PlanText text;
   compiler::PlanBinding binding;
 };
-/// None: there is none that could be edited.
+/// None: there is no plan that could be edited.
 std::optional<PlanSource> read_plan(const RepairInput& input, Context& context);
 
 /// A step at which a run and the model parted, and where the plan was. It refers to the input and
@@ -29,8 +29,8 @@ struct PlanStep {
   Evidence::State differing;  // what held in front of the step and never where it went well
   bool went_well = false;     // its event did, in some run
 };
-/// None: the plan goes nowhere from there that could be asked for again. Says in `remarks` where
-/// the plan is wrong by itself.
+/// None: there is no goal that could be asked for from there. `remarks` tell where the plan itself
+/// is wrong.
 std::optional<PlanStep> find_plan_step(const RepairInput& input, const PlanSource& source,
                                        const RunParting& parting, Context& context,
                                        std::vector<std::string>& remarks);

@@ -30,25 +30,25 @@ struct Proposal {
   std::vector<ChangedFile> files;
   std::vector<std::string> read_by_world;  // of these: applied, the change is one of the world, too
   std::optional<std::string> text;  // of the edited model, flat; none: the model stays as it is
-  /// Of a change of the plan: the number of the proposal that says how the world then is; 0: the
-  /// runs by themselves do.
+  /// For a change of the plan: the number of the proposal whose model of the world it assumes; 0:
+  /// it rests on the runs alone.
   std::size_t under = 0;
   std::vector<PropertyEffect> properties;  // of those that were asked about, in their order
   bool precaution = false;                 // what may fail is taken to fail
   bool open = false;                       // it leaves open what happens
   bool hides_failure = false;  // of a plan: the failure is taken, and nothing is done about it
   Verdict verdict;
-  /// What it does to the traces. Of a change of the model alone the ranking finds it out.
+  /// Effect on the traces. For a change of the model alone, computed by the ranking.
   std::optional<TraceEffects> effects;
-  /// The numbers of those that nothing tells from it: not what was seen, not size, not the usual,
-  /// not the traces. Of the ranking.
+  /// Numbers of the proposals that the ranking cannot tell from it by the observations, by size, by
+  /// oddity or by the traces.
   std::vector<std::size_t> tied = {};
 };
 
 /// "model", "binding", "plan", "scenario": as `--json` says it.
 const char* name_of(Proposal::Changes changes);
 
-/// What one source found.
+/// Proposals from one source.
 struct FoundProposals {
   std::vector<Proposal> proposals;
   bool more = false;         // there are further ones that were not looked at

@@ -8,20 +8,22 @@ namespace {
 
 constexpr std::size_t kMostCompared = 6;  // have their traces compared, where fewer are wanted
 
-/// What may fail is taken to fail in the model's own words, then a split that the starts show, then
-/// what else is consistent: where runs contradict each other that leaves outcomes open.
+/// Order of equally small proposals: precautions in the model's own words (what may fail is taken
+/// to fail), then a split that the starts show, then other consistent changes: where runs
+/// contradict each other, these leave outcomes open.
 int group_of(const Proposal& proposal) {
   if (proposal.changes == Proposal::Changes::kScenario) return 1;
   return proposal.precaution ? 0 : 2;
 }
 
 bool likelier(const Proposal& a, const Proposal& b) {
-  // That anything may happen explains every run: it comes behind what says more.
+  // A proposal that lets anything happen explains every run: it comes after more specific ones.
   return std::tuple(a.size, group_of(a), a.open, ~a.verdict.runs_whole, a.oddity) <
          std::tuple(b.size, group_of(b), b.open, ~b.verdict.runs_whole, b.oddity);
 }
 
-/// Among equals the one that permits the least, then the one that forbids the least.
+/// Among equals, the change that permits the fewest new traces, then the one that forbids the
+/// fewest.
 bool changes_less(const Proposal& a, const Proposal& b) {
   if (likelier(a, b) || likelier(b, a)) return likelier(a, b);
   if (!a.effects || !b.effects || !a.effects->gained || !b.effects->gained) return false;
@@ -30,7 +32,7 @@ bool changes_less(const Proposal& a, const Proposal& b) {
   return a.effects->lost->value < b.effects->lost->value;
 }
 
-/// Runs of equals in what is in order.
+/// Ties between neighbours that the order cannot distinguish.
 void find_ties(std::vector<Proposal>& proposals) {
   for (std::size_t begin = 0; begin < proposals.size();) {
     auto end = begin + 1;
@@ -44,8 +46,8 @@ void find_ties(std::vector<Proposal>& proposals) {
   }
 }
 
-/// Experiments are made to decide: of what was as well founded as the first one, that drops out
-/// which cannot follow a run as far.
+/// Drops proposals that experiments decided against: those as well founded as the first one that
+/// admit fewer runs to their end.
 void drop_refuted(std::vector<Proposal>& proposals) {
   if (proposals.empty()) return;
   const auto& first = proposals.front();

@@ -7,21 +7,22 @@
 
 namespace parallax::tools {
 
-/// What the ranking left out.
+/// Proposals that the ranking left out.
 struct Unranked {
   bool more = false;             // there were more
   std::size_t not_compared = 0;  // of them were as likely as the first, before traces were compared
 };
 
-/// Puts proposals in order, best first, and finds out what they do to the traces. Leaves at most
-/// `limit` (0: all) of them. Those that the order cannot tell apart are tied.
+/// Sorts proposals, best first, and computes their effects on the traces. Leaves at most `limit`
+/// (0: all) of them. Those that the order cannot distinguish are tied.
 Unranked rank_proposals(const RepairInput& input, std::size_t limit,
                         std::vector<Proposal>& proposals, Context& context);
 
-/// So many of the ranked proposals, from the first one on, are of one rank.
+/// Number of ranked proposals, from the first one on, that are tied for the first rank.
 std::size_t of_first_rank(const std::vector<Proposal>& proposals);
 
-/// Those that the runs speak for as much as for the first one, whatever is usual; indices.
+/// Indices of the proposals that the runs support as much as the first one, regardless of size and
+/// oddity.
 std::vector<std::size_t> as_well_founded(const std::vector<Proposal>& proposals);
 
 }  // namespace parallax::tools

@@ -69,7 +69,8 @@ class SplitSearch {
   }
 
  private:
-  /// The runs that came to the step in the same way, as evidence, and what they say of the start.
+  /// The runs that came to the step in the same way, as evidence, and the rule that their starts
+  /// show.
   struct Cause {
     std::vector<const Evidence*> failed, clean;
     std::vector<std::string> parameters;
@@ -159,7 +160,7 @@ class SplitSearch {
     return out;
   }
 
-  /// What `confirm` has found of one of those that failed.
+  /// The borders that `confirm` has found for one of the failed runs.
   std::vector<harness::CauseBorder> borders_of(const Cause& cause) const {
     for (const auto* seen : cause.failed) {
       for (const auto& id : seen->ids) {
@@ -312,7 +313,7 @@ class SplitSearch {
     auto scenario = changed_files(context_.files(), mapped);
     proposal.files.insert(proposal.files.end(), std::make_move_iterator(scenario.begin()),
                           std::make_move_iterator(scenario.end()));
-    // Beside the model that only knows the halves: the fluents are new to the old one.
+    // Compared with the model that only declares the halves: the original one lacks their fluents.
     TraceComparer comparer(input_.loaded, compiler::flat_text(domain.ast, domain.files, declared),
                            context_);
     proposal.effects = comparer.compare(*proposal.text);
@@ -320,7 +321,7 @@ class SplitSearch {
     ++out_.edits;
   }
 
-  /// Each run with the half that it began in, as the split model has to admit it.
+  /// Each run with the half that it began in, which the split model has to admit.
   struct Held {
     std::vector<Evidence> evidence;
     std::size_t set_aside = 0;  // runs of the part that went well

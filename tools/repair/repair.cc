@@ -12,7 +12,7 @@
 namespace parallax::tools {
 namespace {
 
-/// Each is asked; what they find is put in order together.
+/// All sources are asked; their proposals are ranked together.
 constexpr ProposalSource kSources[] = {
     model_proposals,
     region_splits,
@@ -95,7 +95,8 @@ base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& co
     result.edits += found.edits;
     if (result.nearest_miss.empty()) result.nearest_miss = std::move(found.nearest_miss);
   }
-  // What the model has no word for is said where that is left open, or taken to happen.
+  // Causes that the model has no words for are told with proposals that leave the outcome open or
+  // take it to happen.
   for (auto& proposal : result.proposals) {
     if (!proposal.open && !proposal.precaution) continue;
     if (proposal.changes == Proposal::Changes::kScenario) continue;  // it says so itself

@@ -36,8 +36,9 @@ bool is_finished(const fs::path& folder) {
   return verdict != nullptr && *verdict != "inconclusive";
 }
 
-/// Adds what was made of the same scenario besides: by `explain` to tell the kind of cause, which
-/// are runs like the others, those that `paths` has not; by `repair` to tell proposals apart.
+/// Adds further runs of the same scenario: those that `explain` made to find the kind of cause,
+/// which are like the others, as far as `paths` lacks them; those that `repair` made to tell
+/// proposals apart.
 base::Status add_paths(const char* name, const RepairOptions& options, const ScenarioModel& loaded,
                        const harness::JournalHeader& header, std::vector<ObservedPath>& paths,
                        Context& context) {
@@ -52,7 +53,7 @@ base::Status add_paths(const char* name, const RepairOptions& options, const Sce
     context.remark(fmt::format("{}: runs of something else, left out", folder.string()));
     return base::Unit{};
   }
-  // A scenario that may be another one draws other starts.
+  // A scenario that may have changed draws other starts.
   if (!options.other_model && !check_recorded_starts(loaded, *journal, context)) {
     return context.sink().already_reported();
   }
@@ -70,13 +71,13 @@ base::Status add_paths(const char* name, const RepairOptions& options, const Sce
   return base::Unit{};
 }
 
-/// What the world did not do at this step, the model forbids.
+/// Does the model forbid the step that the world refused?
 bool refused_by_both(Admission& admission, const Evidence& seen, std::size_t step) {
   return seen.steps[step].failed && admission.ask(seen, step).refused;
 }
 
-/// Where each way that runs went leaves the model. Of a run of which the model is right that a step
-/// is impossible, only what came before is evidence.
+/// Finds where each way that runs went leaves the model. If the model is right that a step is
+/// impossible, only the steps before it are evidence.
 void find_partings(RepairInput& input, Context& context) {
   std::size_t horizon = 1;
   for (const auto& seen : input.evidence) horizon = std::max(horizon, seen.steps.size());

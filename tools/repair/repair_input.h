@@ -15,7 +15,7 @@
 
 namespace parallax::tools {
 
-/// The folder in a run folder that has the runs which were made to tell proposals apart.
+/// The folder in a run folder with the runs that were made to tell proposals apart.
 inline constexpr const char* kExperiments = "experiments";
 
 struct RepairOptions {
@@ -23,10 +23,10 @@ struct RepairOptions {
   bool other_model = false;             // the scenario need not be as it was when it was run
   std::int64_t limit = 5;               // proposals that are shown; 0: all
   bool plan = false;                    // changes of the plan are proposed, too
-  std::vector<std::string> properties;  // of the plan, that every proposal is held against
+  std::vector<std::string> properties;  // of the plan, checked for every proposal
 };
 
-/// Where runs and model parted.
+/// A place where runs and model part.
 struct RunParting {
   std::vector<std::string> ids;  // of the runs
   std::size_t after = 0;         // timepoint
@@ -34,7 +34,8 @@ struct RunParting {
   Evidence::State seen;          // there, unlike what the model says
 };
 
-/// What a repair starts from: what was run, what it showed, and where the model cannot follow.
+/// Input of a repair: the scenario as it was run, its recorded runs, and where the model cannot
+/// follow.
 struct RepairInput {
   RepairOptions options;
   harness::JournalHeader header;
@@ -42,7 +43,7 @@ struct RepairInput {
   std::unique_ptr<DomainModel> domain;
   std::string text;                 // of the model, flat
   std::vector<ObservedPath> paths;  // of all recorded runs, in the ids of `loaded`
-  /// The same by names, those that went the same way as one, with their divergence; without those
+  /// The paths by names, those that went the same way merged, with their divergence; without those
   /// that begin where the model cannot.
   std::vector<Evidence> evidence;
   std::size_t runs = 0, failed = 0;  // recorded; those that the model cannot follow
@@ -54,17 +55,17 @@ struct RepairInput {
   std::vector<std::string> remarks = {};
 };
 
-/// The same events up to `t`, through the same states in front of the last of them.
+/// Do both have the same events up to `t`, through the same states before the last of them?
 bool goes_like(const Evidence& a, const Evidence& b, std::size_t t);
 
-/// Sets aside what came, in those of `taken` that went the same way as one of `failed` up to a step
-/// which the world refused there, from that step on: what may fail is taken to fail. False: there
-/// are none.
+/// Sets aside the rest of runs in `taken` from a step on that the world refused in a run of
+/// `failed` which went the same way up to there: what may fail is taken to fail. False: there are
+/// none.
 bool set_aside(const std::vector<Evidence>& failed, std::vector<Evidence>& taken);
 
-/// Reads the runs of the folder, those that `explain` made included, and holds them against the
-/// model; not all of them if `context` is stopped meanwhile. Reports
-/// what read_journal, load_recorded_scenario and observed_paths report.
+/// Reads the runs of the folder, including those that `explain` made, and compares them with the
+/// model; not all of them if `context` is stopped meanwhile. Reports what read_journal,
+/// load_recorded_scenario and observed_paths report.
 base::Result<RepairInput> load_repair_input(const RepairOptions& options, Context& context);
 
 }  // namespace parallax::tools

@@ -48,7 +48,7 @@ class Rounds {
       const auto next = (fs::path(options_.out) / fmt::format("run-{}", number)).string();
       const auto goes_on = round(folder, next);
       if (!goes_on) {
-        // What was done is not lost.
+        // Earlier rounds are kept.
         end(LoopEnd::kFailed, fmt::format("an error ended round {}", number));
         break;
       }
@@ -133,19 +133,20 @@ class Rounds {
     round.effects = first->effects;
     round.patch = patch_from_here(first->files);
     evidence_.insert(evidence_.end(), input->evidence.begin(), input->evidence.end());
-    // What it takes to fail is not asked of later rounds either.
+    // Runs that a precaution takes to fail are set aside in later rounds, too.
     if (first->precaution) set_aside(input->evidence, evidence_);
     round.next_folder = next;
     return run_again(next, round);
   }
 
-  /// The first proposal, if it is the only one of its rank; else why not is the end.
+  /// The first proposal, if it is the only one of its rank; otherwise the loop ends with the
+  /// reason.
   Proposal* choose(RepairResult& found, const std::vector<Evidence>& seen) {
     auto& all = found.proposals;
     const auto before = all.size();
     auto cautious = evidence_;
     set_aside(seen, cautious);
-    // What was repaired in earlier rounds stays so.
+    // Proposals must also explain the runs of earlier rounds.
     std::erase_if(all, [&](const Proposal& proposal) {
       const auto& earlier = proposal.precaution ? cautious : evidence_;
       return proposal.text && !verify(*proposal.text, earlier, context_).admits;
@@ -182,7 +183,7 @@ class Rounds {
     const auto simulator = options_.experiments.simulator(loaded);
     if (!simulator) return sink.already_reported();
     std::error_code error;
-    // Other starts than those that the repair was made for: they are clean by construction.
+    // Draws other starts than those of the repair, which are clean by construction.
     options.seed = header_.seed + loop_.rounds.size();
     options.jobs = options_.experiments.jobs;
     options.run_dir = folder;
@@ -233,7 +234,7 @@ class Rounds {
     return false;
   }
 
-  /// A run is clean, too, if what went wrong is no trace any more.
+  /// A run is also clean if the trace that went wrong no longer exists.
   void end_clean(const compiler::CompiledModel& model) {
     const auto& before = original_->compilation.model;
     if (!before.has_constraints || !model.has_constraints) {

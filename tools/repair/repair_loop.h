@@ -28,7 +28,7 @@ enum class LoopEnd : std::uint8_t {
   kPlanAtFault,   // with what was repaired no trace, or none from some starts that had one, reaches
                   // the constraints
   kInconclusive,  // the run decided nothing
-  kRounds,        // so many rounds were allowed
+  kRounds,        // the limit of rounds was reached
   kStopped,
   kFailed,  // with an error, which was reported
 };
@@ -54,10 +54,10 @@ struct RepairLoop {
 };
 
 /// Repairs, runs again and repairs the next discrepancy, in copies of the scenario's files; a world
-/// that is a model stays as it is. What an earlier round was repaired for holds in all later ones.
-/// Each run is asked for as the recorded one was, but for its seed. Reports what repairing and
-/// running report, and an `out` that is not a new folder; rounds that were done before an error are
-/// written, and returned.
+/// that is a model stays as it is. Each repair also has to hold for the runs of all earlier rounds.
+/// Each run has the settings of the recorded one, except its seed. Reports what repairing and
+/// running report, and an `out` that is not a new folder; rounds before an error are written, and
+/// returned.
 base::Result<RepairLoop> repair_in_rounds(const RepairLoopOptions& options, Context& context);
 
 std::string loop_text(const RepairLoop& loop);

@@ -57,7 +57,7 @@ std::string tie_text(const std::vector<std::size_t>& tied) {
   return tied.empty() ? "" : fmt::format(" (tied with {})", fmt::join(tied, ", "));
 }
 
-/// What a change does to the properties that were asked about.
+/// Adds the effects of a change on the requested properties.
 void add_properties(const Proposal& proposal, std::vector<std::string>& out) {
   for (const auto& [property, before, after] : proposal.properties) {
     const auto* what = "nothing is known of";

@@ -64,7 +64,7 @@ base::Result<ScenarioCopy> ScenarioCopy::make(const harness::Scenario& scenario,
   return out;
 }
 
-/// Else a repair of the model would be one of the world as well, and prove itself.
+/// Otherwise a repair of the model would change the world as well, and confirm itself.
 base::Status ScenarioCopy::freeze_world(const harness::Scenario& scenario, const fs::path& root,
                                         Context& context) {
   std::set<std::string> model, world;
@@ -106,7 +106,7 @@ base::Status ScenarioCopy::freeze_world(const harness::Scenario& scenario, const
   return base::Unit{};
 }
 
-/// What the copied scenario names: a name that is absolute leads to the original.
+/// Finds the files that the copied scenario reads: an absolute name leads to the original.
 base::Status ScenarioCopy::look_at_reads(Context& context) {
   auto& sink = context.sink();
   const auto first = context.files().size();
@@ -122,7 +122,7 @@ base::Status ScenarioCopy::look_at_reads(Context& context) {
   }
   for (const auto& name : model_files(*copied, context)) add(name);
   if (copied->bind) add(copied->bind->text);
-  // What the world reads must not be what is changed.
+  // The world must not read files that are changed.
   for (const auto& name : world_files(*copied, context)) {
     if (!read_.contains(base::absolute_name(name)) || !is_copy(name)) continue;
     return sink.error_about(codes::kFileNotWritable, name,

@@ -13,13 +13,13 @@
 
 namespace parallax::tools {
 
-/// The files that a scenario reads, copied to where they may be changed; they lie to each other as
-/// the originals do. A world that is a model, and reads files of the scenario's model, has copies
-/// of its own, which stay as they are: the scenario's copy names those.
+/// Copies of the files that a scenario reads, which may be changed, in the same relative places as
+/// the originals. A world that is a model and reads files of the scenario's model has copies of its
+/// own, which stay unchanged: the scenario's copy names those.
 class ScenarioCopy {
  public:
-  /// Of what `context` has read from its file `first_file` and input `first_input` on. Reports what
-  /// cannot be written, and a world that cannot be given copies of its own.
+  /// Copies the files that `context` has read from its file `first_file` and input `first_input`
+  /// on. Reports files that cannot be written, and a world that cannot be given copies of its own.
   static base::Result<ScenarioCopy> make(const harness::Scenario& scenario,
                                          const std::filesystem::path& folder,
                                          std::size_t first_file, std::size_t first_input,
@@ -30,7 +30,7 @@ class ScenarioCopy {
   /// does not read from a copy.
   base::Result<std::vector<ChangedFile>> in_copies(std::vector<ChangedFile> files,
                                                    Context& context) const;
-  /// The originals whose copies differ by now, by name.
+  /// The originals whose copies have changed, by name.
   base::Result<std::vector<ChangedFile>> changes(Context& context) const;
 
  private:

@@ -12,7 +12,7 @@
 
 namespace parallax::tools {
 
-/// How an edited model stands to what was seen, found out with the edited text alone.
+/// Comparison of an edited model with the observations, made from the edited text alone.
 struct Verdict {
   bool admits = false;              // every run as far as it is needed
   std::string why;                  // it does not: "no right model: ...", "run 1.4 at 3"
@@ -20,11 +20,11 @@ struct Verdict {
   std::size_t runs_consistent = 0;  // to their end, or to where they left the model
   bool refuses = false;             // of a failed run it says that the event cannot happen
 };
-/// `text` is the edited model. Compiles it, and asks a solver about each way that runs went.
+/// Compiles `text`, the edited model, and asks a solver about each way that runs went.
 Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
                const Context& context);
 
-/// What an edit does to the traces of the scenario: its model with its plan, up to its horizon.
+/// Effect of an edit on the traces of the scenario: its model with its plan, up to its horizon.
 struct TraceEffects {
   std::optional<runtime::TraceNumber> lost, gained;  // none: not known
   /// A trace reaches the state constraints; none: it is not known, or nothing asks for it.

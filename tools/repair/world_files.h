@@ -10,13 +10,13 @@
 namespace parallax::tools {
 
 /// The files of the model that is the scenario's world, with those that they load. Empty where the
-/// world is none, or cannot be read any more.
+/// world is not a model, or can no longer be read.
 std::vector<std::string> world_files(const harness::Scenario& scenario, const Context& context);
 /// The same of the scenario's model.
 std::vector<std::string> model_files(const harness::Scenario& scenario, const Context& context);
 
-/// Those of the changed files that the world reads, too, by the names that they have. To change
-/// them changes the world with the model.
+/// The changed files that the world reads, too, by their names. Changing them changes the world
+/// with the model.
 std::vector<std::string> read_by_world(const harness::Scenario& scenario,
                                        const std::vector<ChangedFile>& files,
                                        const Context& context);

@@ -1,5 +1,4 @@
-# cmake -DOUTPUT=templates.cc -DFOLDER=templates -P embed.cmake
-# Writes C++ that holds the templates as raw string literals, in pieces that every compiler takes.
+# Writes C++ that holds the templates as raw string literals, in pieces short enough for every compiler.
 cmake_policy(SET CMP0053 NEW)  # @names@ are replaced by file(CONFIGURE) alone
 file(GLOB_RECURSE files RELATIVE ${FOLDER} ${FOLDER}/*)
 list(SORT files)

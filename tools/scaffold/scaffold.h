@@ -20,7 +20,7 @@ struct ScaffoldFile {
   std::string name, text;
 };
 
-/// What is wrong with the name of a scenario; empty: nothing.
+/// Describes what is wrong with the name of a scenario; empty: nothing.
 std::string wrong_scenario_name(std::string_view name);
 
 /// The files of a scenario that runs as it is, sorted by name.

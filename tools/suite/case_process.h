@@ -12,8 +12,8 @@
 
 namespace parallax::tools {
 
-/// What this program is run with. Files are named by others: one of the name `--certify=m.e` is a
-/// file all the same.
+/// Options and files of a run of this program. File names come from others: one like
+/// `--certify=m.e` is still a file.
 struct CommandWords {
   std::vector<std::string> options;  // behind the command's name
   std::vector<std::string> files;
@@ -25,18 +25,18 @@ base::Captured run_this_program(const CommandWords& words, Footprint& footprint,
                                 const std::atomic<bool>& stop,
                                 std::optional<std::uint64_t> cpu_limit_s = {});
 
-/// Of a process that ended without an answer: notes why.
+/// Notes why a process ended without an answer.
 void report_no_answer(const base::Captured& child, CaseResult& result);
 
-/// What the process of a case may do is what the suite may.
+/// Passes the suite's permissions on to the process of a case.
 void add_permissions(const RunnerOptions& options, bool simulates, std::vector<std::string>& words);
 
-/// What explains an answer may take so long, where the case has no limit of its own.
+/// Time limit for explaining an answer, where the case has no limit of its own.
 inline constexpr double kBlameLimitS = 60.0;
 
-/// The document of `parallax explain --json` about models, or a run folder, for whose kind of cause
-/// it may make further simulations. Empty where it gives none: then it is not known what to blame,
-/// which changes no outcome.
+/// The document of `parallax explain --json` about models, or about a run folder, where it may make
+/// further simulations to find the kind of cause. Empty if there is none: then the cause is
+/// unknown, which changes no outcome.
 std::string explanation_of(CommandWords words, double limit_s, const RunnerOptions& options,
                            Footprint& footprint, const std::atomic<bool>& stop);
 

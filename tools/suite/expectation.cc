@@ -38,8 +38,8 @@ std::string words_of(const harness::CauseExpectation& cause) {
   return out;
 }
 
-/// Is what a document says of a discrepancy, or of all with one cause, as expected? The kind of
-/// cause apart.
+/// Does a discrepancy in a document, or all those with one cause, match the expectation? Apart from
+/// the kind of cause.
 bool is_as_expected(const harness::CauseExpectation& expect, const Json& found) {
   const auto fluents = member(found, "fluents", Json::array());
   const auto reason = member(found, "reason", "").get<std::string>();
@@ -88,7 +88,7 @@ std::vector<std::string> unlike_causes(const harness::CauseExpectation& expect,
   return out;
 }
 
-/// What the runs do not show, although they have to.
+/// Tells which required evidence the runs do not give.
 std::string missing_evidence(const harness::RateExpectation& expect, const std::string& found,
                              const harness::RateCounts& counts) {
   const harness::RateClaim claim{expect.lower, expect.upper, *expect.confidence};

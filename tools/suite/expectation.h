@@ -8,9 +8,9 @@
 
 namespace parallax::tools {
 
-/// What the document of `parallax run --json` says against the expectation, one sentence each;
-/// empty if it is met. A document that is no result of a run is itself a sentence. `explanation`:
-/// the document of `parallax explain --json` where a kind of cause is expected.
+/// Violations of the expectation by the document of `parallax run --json`, one sentence each; empty
+/// if it is met. A document without the result of a run gives a sentence itself. `explanation`: the
+/// document of `parallax explain --json` where a kind of cause is expected.
 std::vector<std::string> unmet(const harness::Expectation& expect, std::string_view run_document,
                                std::string_view explanation);
 
@@ -21,11 +21,11 @@ std::vector<std::string> unmet(const harness::RateExpectation& expect,
 /// The first error in a document of `--json`, or empty.
 std::string first_error(const std::string& document);
 
-/// What the first discrepancy of a run is, in words; empty without one.
+/// The first discrepancy of a run, in words; empty without one.
 std::string first_discrepancy(const std::string& run_document);
 
-/// What the document of `parallax explain --json` lays it to: its words, and below them the axioms
-/// of the first set with their places. Empty if it names none.
+/// The cause named by the document of `parallax explain --json`: its words, and below them the
+/// axioms of the first set with their places. Empty if it names none.
 std::string blame(std::string_view explanation);
 
 /// The most frequent causes of a document of `parallax rates --json`, one a line; may be empty.

@@ -30,7 +30,7 @@ Footprint::Footprint(const SuiteCase& one, const fs::path& out)
     : out_(out),
       file_(out / ("footprint-" + base::sha256_hex(one.name()).substr(0, 16) + ".json")),
       begin_(fs::file_time_type::clock::now()) {
-  // A program without a case's inputs: a simulator that somebody else wrote.
+  // A case with a command depends on a foreign simulator, whose inputs are unknown.
   repeatable_ = one.command.empty();
 }
 
@@ -40,7 +40,7 @@ Footprint::~Footprint() {
 }
 
 void Footprint::add(const base::Captured& child) {
-  // 4: a limit of time or memory had a say.
+  // Exit code 4: the answer depends on a limit of time or memory.
   repeatable_ = repeatable_ && (child.code == 0 || child.code == 1);
   answers_ += base::sha256_hex(without_timings(child.out));
   base::DiagnosticSink unread;
@@ -85,7 +85,7 @@ void Footprint::into(CaseResult& result) const {
       result.repeatable = false;
       return;
     }
-    // One that has appeared since, with an older time, was not read.
+    // A file that has appeared since, with an older time, was not read.
     inputs.push_back({path, absent_.contains(path) ? std::string() : hashes.of(path)});
   }
   result.inputs = std::move(inputs);

@@ -11,7 +11,7 @@
 
 namespace parallax::tools {
 
-/// What the processes of one case read, used and answered.
+/// Inputs, memory and answers of the processes of one case.
 class Footprint {
  public:
   /// `out` is the suite's folder, for a file while the case runs; what lies below it is no input.
@@ -20,16 +20,16 @@ class Footprint {
   Footprint(const Footprint&) = delete;
   Footprint& operator=(const Footprint&) = delete;
 
-  /// That a process is to write (option --footprint).
+  /// Name of the file that a process is to write (option --footprint).
   std::string file() const { return file_.string(); }
-  /// Of a process that has ended.
+  /// Adds a process that has ended.
   void add(const base::Captured& child);
-  /// A file that the suite itself looks at.
+  /// Adds a file that the suite itself reads.
   void add_input(const std::string& path) { inputs_.insert(path); }
   /// Paths of files that were read, or that were looked for in vain.
   const std::set<std::string>& inputs() const { return inputs_; }
-  /// Notes all of it in the result. No inputs are noted where one has changed since the beginning:
-  /// nobody knows what was read then.
+  /// Writes all of it to the result. No inputs are recorded if one has changed since the beginning:
+  /// then nobody knows what was read.
   void into(CaseResult& result) const;
 
  private:

@@ -12,8 +12,8 @@ struct ListedTrace {
   std::string_view text;  // its lines below the number
 };
 
-/// What one list of traces has and another has not, whatever the numbers: of each side the trace
-/// with the fewest lines, the first of those. Views of the texts.
+/// Difference of two lists of traces, whatever the numbers: of each side the trace with the fewest
+/// lines that the other one lacks, the first of those. Views of the texts.
 struct ListDifference {
   std::optional<ListedTrace> lost, gained;
 };
@@ -22,8 +22,8 @@ ListDifference list_difference(std::string_view expected, std::string_view found
 /// The trace as a line of `parallax traces --format jsonl`; empty if it is written in another way.
 std::string jsonl_of(const ListedTrace& trace);
 
-/// Where and why a trace is none of the model, as the document of `parallax traces --replay --json`
-/// says it of the first one; empty if it is one, or that is not known.
+/// The first place and reason why a trace is not one of the model, from the document of `parallax
+/// traces --replay --json`; empty if it is one, or that is not known.
 std::string refusal_of(std::string_view replay_document);
 
 }  // namespace parallax::tools

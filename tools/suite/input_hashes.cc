@@ -56,7 +56,7 @@ std::string hash_of_path(const fs::path& path) {
 }
 
 int add_library(dl_phdr_info* info, std::size_t /*size*/, void* paths) {
-  // The program itself has no name, and the kernel's page no file.
+  // The program itself has no name here, and the kernel's page has no file.
   const std::string name = info->dlpi_name == nullptr ? "" : info->dlpi_name;
   if (name.starts_with('/')) static_cast<std::vector<std::string>*>(paths)->push_back(name);
   return 0;

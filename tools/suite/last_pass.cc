@@ -22,8 +22,8 @@ using Json = nlohmann::json;
 constexpr std::size_t kMaxBytes = std::size_t{4} << 20U;  // of all files of a case
 constexpr std::size_t kMaxStoredBytes = 8 * kMaxBytes;    // with what JSON escapes
 
-/// The files as they were read; none if one is another by now, no text, or too large. Folders and
-/// what is not there have no text.
+/// The files as they were read; none if one has changed since, is not text, or is too large.
+/// Folders and missing files have no text.
 std::optional<Json> texts_of(const std::vector<InputFile>& inputs) {
   auto out = Json::object();
   std::size_t bytes = 0;

@@ -9,22 +9,22 @@
 
 namespace parallax::tools {
 
-/// What a case read when it passed for the last time.
+/// The files that a case read when it last passed.
 struct LastPass {
   std::string program;     // program_hash() of then
   std::string definition;  // of the case in its manifest, hashed
   SuiteTexts texts;
 };
 
-/// The texts of the last pass of each case, a file each in a folder. What fails now is held against
+/// The texts of the last pass of each case, a file each in a folder. New failures are compared with
 /// them.
 class LastPasses {
  public:
   explicit LastPasses(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// Keeps the files of a case that passes, provided that they are still what it read, are texts
-  /// and no more than some megabytes; else, and where it cannot be written, what is known of the
-  /// case is forgotten. Safe from several threads for different cases.
+  /// Keeps the files of a case that passes, provided that they have not changed since it read them,
+  /// are texts and have no more than some megabytes; otherwise, and where it cannot be written, the
+  /// case's earlier files are removed. Safe from several threads for different cases.
   void keep(const SuiteCase& one, const CaseResult& result) const;
   std::optional<LastPass> find(const SuiteCase& one) const;
 

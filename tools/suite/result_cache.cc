@@ -50,7 +50,7 @@ std::vector<std::pair<std::int64_t, fs::path>> entries_in(const fs::path& folder
   return out;
 }
 
-/// The result in an entry; nothing if it is not what was written.
+/// The result in an entry; none if the entry is damaged or not a repeatable pass.
 std::optional<CaseResult> read_entry(const fs::path& path) {
   base::DiagnosticSink unread;
   const auto text = base::read_file(path, unread, kMaxEntryBytes);

@@ -11,8 +11,8 @@
 
 namespace parallax::tools {
 
-/// What of a case stands in the suite's own files and on its command line, so that a result belongs
-/// to it only as long as this is the same. What files say is not in it: they are inputs.
+/// The part of a case that is in the suite's own files and on its command line: a result belongs to
+/// the case only as long as this is the same. Contents of files are not in it: they are inputs.
 struct CaseKey {
   std::string program;  // program_hash()
   std::uint64_t seed = 1;
@@ -34,10 +34,10 @@ class ResultCache {
     std::int64_t age_order = 0;  // the lower, the longer ago it was made or verified
   };
   const CaseKey& key() const { return key_; }
-  /// `damaged` counts entries that are not what was written.
+  /// `damaged` counts entries that have been altered.
   std::optional<Hit> find(const SuiteCase& one, InputHashes& hashes, std::size_t& damaged) const;
-  /// Keeps a pass; anything else, and a result that another run need not repeat, is passed over.
-  /// False if it could not be written. Safe from several threads for different cases.
+  /// Keeps a pass; other results, and those that another run need not repeat, are skipped. False if
+  /// it could not be written. Safe from several threads for different cases.
   bool store(const SuiteCase& one, const CaseResult& result) const;
 
  private:
@@ -47,7 +47,8 @@ class ResultCache {
   CaseKey key_;
 };
 
-/// Whether a case that was run again answered as the cache says; what differs, in words.
+/// Compares the result of a case that was run again with the cached one; returns the differences in
+/// words.
 std::string disagreement(const CaseResult& cached, const CaseResult& again);
 
 }  // namespace parallax::tools

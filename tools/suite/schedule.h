@@ -15,8 +15,8 @@ struct Task {
   std::int64_t memory_mb = 0;    // that it needs
 };
 
-/// Hands out tasks to threads: those whose time nobody knows first, then the longest first, so that
-/// no long one is left for the end; only as many at once as the memory holds.
+/// Hands out tasks to threads: those with unknown time first, then the longest first, so that no
+/// long one is left for the end; only as many at once as the memory holds.
 class Schedule {
  public:
   /// `memory_mb` 0: as many as there are threads.

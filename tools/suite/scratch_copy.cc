@@ -26,7 +26,8 @@ base::Result<ScratchCopy> ScratchCopy::make(const SuiteTexts& texts, const fs::p
   ScratchCopy out;
   out.folder_ = folder;
   out.root_ = base::common_folder(texts);
-  // What the originals may name lies in the copy as well, wherever their root is.
+  // Marks the folder as the root, so that names that the originals may use stay allowed in the
+  // copy.
   if (!write_new(folder / base::kRootMarker, "", sink)) return sink.already_reported();
   for (const auto& [name, text] : texts) {
     const auto target = folder / fs::path(name).lexically_relative(out.root_);

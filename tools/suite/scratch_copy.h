@@ -11,8 +11,8 @@ namespace parallax::tools {
 /// The texts that a suite reads, by the absolute names that they are read under.
 using SuiteTexts = std::map<std::string, std::string>;
 
-/// Copies of all files of a suite, in a folder of their own, which lie to each other as the
-/// originals do. Only the copies are ever written.
+/// Copies of all files of a suite, in a folder of their own, in the same relative places as the
+/// originals. Only the copies are ever written.
 class ScratchCopy {
  public:
   /// `folder` must be new. Reports what cannot be written.
@@ -21,14 +21,14 @@ class ScratchCopy {
                                         base::DiagnosticSink& sink);
 
   const std::filesystem::path& folder() const { return folder_; }
-  /// What of the originals it stands for: the folder that all of them lie in.
+  /// The folder that contains all originals.
   const std::filesystem::path& root() const { return root_; }
-  /// Of a file of the suite; any other is where it is.
+  /// The copy of a file of the suite; any other file stays where it is.
   std::filesystem::path place_of(const std::string& name) const;
-  /// Gives the copies of a file another text, those under its other names (links) as well.
+  /// Writes another text to the copies of a file, including those under its other names (links).
   base::Status write(const std::string& name, const std::string& text,
                      base::DiagnosticSink& sink) const;
-  /// Gives them the text of the original.
+  /// Restores the text of the original.
   base::Status restore(const std::string& name, base::DiagnosticSink& sink) const;
 
  private:

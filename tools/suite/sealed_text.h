@@ -6,8 +6,8 @@
 
 namespace parallax::tools {
 
-/// A JSON document with its own SHA-256 around it, so that one that was changed by hand or half
-/// written is seen to be.
+/// A JSON document with its own SHA-256 around it, so that manual changes and half-written files
+/// are detected.
 std::string sealed(const std::string& document);
 
 /// The document, as `base::json_text` writes it; nothing if it is not what was sealed.

@@ -17,7 +17,7 @@ std::optional<std::uint32_t> number_in(const Environment& environment, const std
   return base::whole_number<std::uint32_t>(environment(name));
 }
 
-/// Of two variables, the first counted from `first`.
+/// Shard from two environment variables, index and count; the index counts from `first`.
 base::Result<Shard> from_variables(const std::string& index, const std::string& count,
                                    std::uint32_t first, const Environment& environment,
                                    base::DiagnosticSink& sink) {

@@ -51,7 +51,7 @@ std::string cut(const std::string& text) {
   return lines <= kShownLines ? out : out + fmt::format("\n... {} more lines", lines - kShownLines);
 }
 
-/// Files of now by absolute name, as far as they are texts.
+/// The current texts of files, by absolute name, as far as they are texts.
 SuiteTexts read_now(const std::set<std::string>& paths) {
   SuiteTexts out;
   for (const auto& path : paths) {
@@ -87,8 +87,8 @@ std::string changes(const SuiteCase& one, const LastPass& before) {
   return fmt::format("{} and {} more changed", out, changed.size() - kShownChanges);
 }
 
-/// What `parallax diff` is given for one side: the scenario, the model, or a file that loads all of
-/// several models. Nothing where a file is not there.
+/// The input of `parallax diff` for one side: the scenario, the model, or a file that loads all of
+/// several models. None where a file is missing.
 std::optional<fs::path> model_in(const ScratchCopy& copy, const SuiteCase& one) {
   std::vector<fs::path> models;
   if (const auto* traces = std::get_if<harness::ManifestCase>(&one.check)) {
@@ -111,7 +111,7 @@ std::optional<fs::path> model_in(const ScratchCopy& copy, const SuiteCase& one) 
   return file;
 }
 
-/// What `parallax diff` says of the models; empty if it says nothing.
+/// Output of `parallax diff` about the models; empty if there is none.
 std::string model_difference(const SuiteCase& one, const LastPass& before,
                              const RunnerOptions& options, const Footprint& footprint,
                              const std::atomic<bool>& stop) {

@@ -8,8 +8,8 @@
 
 namespace parallax::tools {
 
-/// Of a case that fails: which of its files have changed since it passed last, and what `parallax
-/// diff` says of the models of then and now: the shortest trace that was lost or gained, the axioms
+/// Files of a failing case that have changed since it last passed, and the output of `parallax
+/// diff` about the models of then and now: the shortest trace that was lost or gained, the axioms
 /// against it, the edit that it depends on. Empty where no pass is known.
 std::string since_last_pass(const SuiteCase& one, const RunnerOptions& options,
                             const Footprint& footprint, const std::atomic<bool>& stop);

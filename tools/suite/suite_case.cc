@@ -108,8 +108,8 @@ class YamlFinder {
   std::vector<std::string> files_;
 };
 
-/// Can a text that is too large for a parser hold a case, however it is written? A backslash may
-/// hide a key, `include` may bring one.
+/// Can a text that is too large for a parser contain a case, in any notation? A backslash may hide
+/// a key, `include` may bring one.
 bool may_hold_case(std::string_view text) {
   constexpr std::array<std::string_view, 5> kSigns = {"cases", "expect", "model", "include", "\\"};
   return std::any_of(kSigns.begin(), kSigns.end(), [&](std::string_view sign) {
@@ -127,7 +127,7 @@ std::string_view no_text(std::string_view bytes) {
   return is_text ? "" : "it is no text in UTF-8";
 }
 
-/// Says what was read, or will be by the processes of the cases.
+/// Records the files that were read, or will be by the processes of the cases.
 void note_inputs(const std::vector<std::string>& inputs, base::SourceFiles& files) {
   for (const auto& input : inputs) files.note_input(input);
 }

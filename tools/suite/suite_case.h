@@ -13,7 +13,7 @@
 
 namespace parallax::tools {
 
-/// One thing that a suite checks: a scenario file with `expect`, or a case of a manifest.
+/// A case of a suite: a scenario file with `expect`, or a case of a manifest.
 struct SuiteCase {
   std::string file;   // the scenario or the manifest, as the user's path leads to it
   std::string id;     // of the case; of a scenario its file
@@ -31,7 +31,7 @@ struct SuiteCase {
 
 enum class Outcome : std::uint8_t {
   kPassed,
-  kFailed,        // the answer is another one than expected
+  kFailed,        // the answer is not the expected one
   kError,         // no answer: a crash, a limit, a refused input
   kInconclusive,  // as expected so far, but the run came to no verdict and none is expected
   kNotFinished,   // the suite ended first
@@ -56,7 +56,7 @@ struct CaseResult {
   std::string answer;             // SHA-256 of what the program answered, timings left out
   std::vector<InputFile> inputs;  // what the program read, by path
   std::int64_t peak_memory_mb = 0;
-  bool repeatable = false;               // no limit and no foreign program had a say in the answer
+  bool repeatable = false;               // the answer depends on no limit and no foreign program
   std::string ledger;                    // what it was judged by (ledger_digest_of); empty: by none
   std::string verdict;                   // of a scenario's run
   std::vector<MeasuredRate> rates;       // of a scenario whose rate is expected
@@ -65,11 +65,12 @@ struct CaseResult {
   bool flaky() const { return outcome == Outcome::kPassed && attempts > 1; }
 };
 
-/// The cases below the paths, sorted by group and id: manifests (a key `cases` at the outermost
-/// level), scenarios with `expect`, and scenarios that are broken but meant as a case, which must
-/// not pass by being skipped. A file is told by what a YAML parser finds in it (suite_file_kind).
-/// Reported are a broken manifest, a missing path, and folders and YAML files that cannot be read,
-/// are no text in UTF-8, or lie elsewhere. What is read, or will be, becomes an input of `files`.
+/// Finds the cases below the paths, sorted by group and id: manifests (a key `cases` at the
+/// outermost level), scenarios with `expect`, and broken scenarios that are meant as a case, which
+/// must not pass by being skipped. The kind of a file is decided by a YAML parser
+/// (suite_file_kind). Reports a broken manifest, a missing path, and folders and YAML files that
+/// cannot be read, are not text in UTF-8, or lie elsewhere. Files that are read, or will be, become
+/// inputs of `files`.
 base::Result<std::vector<SuiteCase>> find_cases(const std::vector<std::string>& paths,
                                                 bool allow_outside, base::SourceFiles& files,
                                                 base::DiagnosticSink& sink);

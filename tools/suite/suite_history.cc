@@ -38,7 +38,7 @@ MeasuredRate measured(const Json& rate, std::string of, const Json& trace, const
   return out;
 }
 
-/// All that was read, wherever the checkout lies.
+/// All files that were read, wherever the checkout lies.
 std::string hash_of(const std::vector<InputFile>& inputs) {
   std::vector<std::string> contents;
   for (const auto& input : inputs) contents.push_back(input.sha256);

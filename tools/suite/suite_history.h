@@ -14,7 +14,7 @@ void note_verdict(std::string_view run_document, CaseResult& result);
 /// Notes the rates in the document of `parallax rates --json`: any discrepancy, and each cause.
 void note_rates(std::string_view rates_document, CaseResult& result);
 
-/// What a history keeps of the suite.
+/// The line that a history keeps of the suite.
 HistoryLine history_line(const SuiteRecord& record, const SuiteIdentity& suite,
                          std::string revision);
 

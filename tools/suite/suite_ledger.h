@@ -10,18 +10,19 @@
 
 namespace parallax::tools {
 
-/// The known discrepancies that the scenarios of a suite are held against.
+/// The known discrepancies with which the scenarios of a suite are compared.
 struct SuiteLedger {
   harness::Ledger ledger;
   std::string file;
 
-  /// What the ledger says of the case, hashed; empty for a case that simulates nothing.
+  /// Hash of the ledger's statements about the case; empty for a case that simulates nothing.
   std::string digest_of(const SuiteCase& one) const;
-  /// Notes as problems what the ledger does not know, or knows as repaired; and which entries are
-  /// shown and which would have been. None: the run gave no document to judge.
+  /// Notes as problems discrepancies that the ledger does not know, or knows as repaired; also
+  /// notes the entries that are shown and those that could have been. None: the run gave no
+  /// document to judge.
   void judge(const SuiteCase& one, const std::optional<ShownRun>& run, CaseResult& result) const;
   /// Open and accepted entries that runs of these results looked for and none has shown, and those
-  /// whose scenario is not there any more. A sentence each.
+  /// whose scenario no longer exists. A sentence each.
   std::vector<std::string> stale(const std::vector<CaseResult>& results) const;
 };
 

@@ -15,7 +15,7 @@
 namespace parallax::tools {
 namespace {
 
-/// What is known of a case that is to be run: how long it took, and what it needs.
+/// A case to be run, with its time and memory as far as they are known.
 Task task_of(std::size_t index, const SuiteCase& one, const StoredCases& earlier) {
   constexpr std::int64_t kUnknownMb = 500;
   Task task{index, std::nullopt, kUnknownMb};
@@ -49,7 +49,7 @@ std::string line_of(const SuiteCase& one, const CaseResult& result) {
   }
   std::string details;
   for (const auto& problem : result.problems) details += problem + '\n';
-  // Of a case without an answer, what the program said of it is the answer.
+  // For a case without an answer, the messages of the program take its place.
   if (result.outcome == Outcome::kError) details += result.messages;
   while (details.ends_with('\n')) details.pop_back();
   if (details.empty()) return line;

@@ -14,30 +14,28 @@
 
 namespace parallax::tools {
 
-/// Where lines about a running suite go.
+/// Receives lines about a running suite.
 using Remark = std::function<void(const std::string&)>;
 
 /// A finished case in a line, what is wrong with it in further ones.
 std::string line_of(const SuiteCase& one, const CaseResult& result);
 
-/// Cases of a suite whose results are taken over, and what is left to do.
+/// Takes over earlier results of a suite's cases, and tells which cases are left to do.
 class Reuse {
  public:
   Reuse(SuiteRecord& record, const ResultCache& cache, const LastPasses& passes, Remark remark)
       : record_(record), cache_(cache), passes_(passes), remark_(std::move(remark)) {}
 
-  /// Takes over the results of an interrupted suite whose files are as they were. With
-  /// `permits_more` than that suite did, cases without an answer are run again: it may have been
-  /// refused.
+  /// Takes over the results of an interrupted suite whose files have not changed. If `permits_more`
+  /// than in that suite, cases without an answer are run again: that may have been refused.
   void resume(const StoredCases& earlier, bool permits_more);
-  /// Takes over cached passes, which are the last ones of their cases from now on; `verified_share`
-  /// of them, from 0 to 1, is run all the same, those first that nobody has looked at for the
-  /// longest time.
+  /// Takes over cached passes, which then count as the last ones of their cases; `verified_share`
+  /// of them, from 0 to 1, is run all the same, those verified longest ago first.
   void look_up(double verified_share);
 
   /// Has the case no result yet?
   bool is_open(std::size_t i) const;
-  /// Of a case that was run: holds it against what the cache said. Thread-safe.
+  /// Compares the result of a case that was run with the cached one. Thread-safe.
   void verify(std::size_t i, CaseResult& result) const;
 
  private:

@@ -26,7 +26,7 @@ base::Reported refused(const std::string& folder, const std::string& why,
   return sink.error_about(codes::kUsage, folder, "--merge: " + why);
 }
 
-/// The first name that one list of cases has and the other has not.
+/// The first name in one list of cases that the other lacks.
 std::string only_in_one(const StoredCases& a, const StoredCases& b) {
   for (const auto& [name, one] : a) {
     if (!b.contains(name)) return name;
@@ -40,7 +40,7 @@ std::string only_in_one(const StoredCases& a, const StoredCases& b) {
 /// Finds shards that were run on different states of the cases and their files.
 class RevisionCheck {
  public:
-  /// Why the part is of another revision than one before it; empty: it is not.
+  /// Why the part has another revision than an earlier one; empty: it has not.
   std::string add(const Part& part) {
     for (const auto& [name, stored] : part.results.cases) {
       if (auto why = differs("the case " + name, stored.one.revision, part.folder); !why.empty()) {

@@ -9,7 +9,7 @@
 
 namespace parallax::tools {
 
-/// The results of the shards of one suite, as if one process had run them all.
+/// The merged results of the shards of one suite, as if one process had run them all.
 struct MergedSuite {
   SuiteIdentity identity;  // shard 1/1
   std::vector<SuiteCase> cases;

@@ -51,7 +51,7 @@ void append_problem(std::string& out, std::string_view element, const CaseResult
                      xml_escaped(headline), to_string(result.outcome), xml_escaped(all));
 }
 
-/// A failure that is known and does not count; what it is stays to be read.
+/// A failure in quarantine does not count, but its problems stay readable.
 void append_quarantined(std::string& out, const std::string& reason, const CaseResult& result) {
   out += fmt::format("      <skipped message=\"quarantined: {}\">", xml_escaped(reason));
   for (const auto& problem : result.problems) out += xml_escaped(problem + '\n');

@@ -25,8 +25,8 @@ std::string to_junit(const std::vector<SuiteCase>& cases, const std::vector<Case
 bool is_quarantined(const SuiteCase& one, const CaseResult& result,
                     const harness::Quarantine& quarantine);
 
-/// The results of a running suite, kept on disk while it runs: every case stands there as not
-/// finished from the beginning, and the files are written anew at most once a second. Thread-safe.
+/// The results of a running suite, kept on disk while it runs: every case is listed there as not
+/// finished from the beginning, and the files are rewritten at most once a second. Thread-safe.
 class SuiteRecord {
  public:
   /// `junit` may be empty: then no such report is written. The results are laid over `stored`,

@@ -71,7 +71,7 @@ std::optional<Outcome> outcome_of(const std::string& text) {
   return std::nullopt;
 }
 
-/// Of the first form of these files: the outcome alone.
+/// A case in the first format of these files, which has the outcome alone.
 std::optional<StoredCase> bare_case(const std::string& name, const std::string& outcome) {
   const auto known = outcome_of(outcome);
   if (!known) return std::nullopt;

@@ -14,7 +14,7 @@
 
 namespace parallax::tools {
 
-/// What makes the results of two suites comparable.
+/// Settings that make the results of two suites comparable.
 struct SuiteIdentity {
   std::string version;  // of the program, for people
   std::string program;  // program_hash()
@@ -25,14 +25,15 @@ struct SuiteIdentity {
   bool fast = false;
   bool allow_commands = false, allow_outside = false;
 
-  /// The same but for permissions, of which it has more.
+  /// Is it the same except for permissions, of which it has more?
   bool permits_more_than(const SuiteIdentity& other) const;
 };
 
-/// How two suites differ, "seed 1 and seed 2"; empty: in nothing but the index of their shards.
+/// The difference of two suites, "seed 1 and seed 2"; empty: they differ in nothing but the index
+/// of their shards.
 std::string difference(const SuiteIdentity& a, const SuiteIdentity& b);
 
-/// A case as a results file keeps it; of `expect` only what `revision` tells is kept.
+/// A case as a results file keeps it; of `expect` only its part in `revision` is kept.
 struct StoredCase {
   SuiteCase one;
   CaseResult result;
@@ -58,7 +59,7 @@ base::Status write_results(const std::filesystem::path& folder, StoredResults st
                            const std::vector<SuiteCase>& cases,
                            const std::vector<CaseResult>& results, base::DiagnosticSink& sink);
 
-/// A result as a JSON object on one line, and back; nothing if the text is no result.
+/// A result as a JSON object on one line, and back; none if the text is not a result.
 std::string result_text(const CaseResult& result);
 std::optional<CaseResult> result_from_text(std::string_view text);
 

@@ -57,7 +57,7 @@ void run_rates(const SuiteCase& one, const harness::Expectation& expect,
   add_limit(expect, options, words);
   const auto child = run_this_program({std::move(words), {one.file}}, footprint, stop);
   result.messages += child.err;
-  // All runs were made and do not tell: that is an answer to the expectation.
+  // All runs were made and are inconclusive: that is an answer to the expectation.
   const auto answer = base::parse_json(child.out);
   const auto* complete = base::json_member(answer, "complete");
   const bool all_made = child.code == 4 && complete != nullptr && *complete == true;
@@ -82,7 +82,7 @@ std::string explanation_of_run(const fs::path& folder, const harness::Expectatio
                         footprint, stop);
 }
 
-/// Makes room for a new run. Removes nothing but what a run has left there.
+/// Makes room for a new run. Removes only files that a run has left there.
 bool clear_run_folder(const fs::path& folder) {
   std::error_code error;
   const auto status = fs::symlink_status(folder, error);
@@ -169,7 +169,7 @@ CaseResult try_case(const SuiteCase& one, const RunnerOptions& options,
     auto since = since_last_pass(one, options, footprint, stop);
     if (!since.empty()) result.problems.push_back(std::move(since));
   }
-  // A process that was cut off says nothing about the case.
+  // A process that was cut off tells nothing about the case.
   if (stop.load()) return {};
   footprint.into(result);
   result.ledger = ledger_digest_of(options.ledger, one);
@@ -178,9 +178,9 @@ CaseResult try_case(const SuiteCase& one, const RunnerOptions& options,
   return result;
 }
 
-/// Whether one attempt decides. What is expected of a rate, and the verdict `no-discrepancy`, are
-/// statistical tests with a stated error: tried until it passes, a test errs more often. That an
-/// attempt gave no answer may depend on what it would have been, so that ends it as well.
+/// Does one attempt decide? Expected rates, and the verdict `no-discrepancy`, are statistical tests
+/// with a stated error: repeated until it passes, a test errs more often. Whether an attempt gives
+/// an answer may depend on the result, so a missing answer decides as well.
 bool one_attempt_decides(const SuiteCase& one) {
   const auto* expect = std::get_if<harness::Expectation>(&one.check);
   return expect != nullptr && (expect->rate.has_value() ||
@@ -209,7 +209,7 @@ CaseResult run_case(const SuiteCase& one, const RunnerOptions& options,
     auto again = try_case(one, options, stop);
     again.attempts = result.attempts + 1;
     again.wall_s += result.wall_s;
-    // What went wrong before is what makes it flaky, so it stays to be read.
+    // The problems of failed attempts make the case flaky, so they are kept as messages.
     if (again.outcome == Outcome::kPassed) {
       for (const auto& problem : result.problems) {
         again.messages += fmt::format("attempt {}: {}\n", result.attempts, problem);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxRows = 200;
 
-/// How a case stands, in a word that people read.
+/// The state of a case, in a word.
 std::string standing(const SuiteRecord& record, std::size_t i) {
   const auto& result = record.results()[i];
   if (is_quarantined(record.cases()[i], result, record.quarantine())) return "quarantined";
@@ -27,7 +27,7 @@ std::string first_line(const CaseResult& result) {
   return problem.substr(0, problem.find('\n'));
 }
 
-/// Why the case wants attention, in a line.
+/// Why the case needs attention, in a line.
 std::string reason(const SuiteRecord& record, std::size_t i) {
   const auto& one = record.cases()[i];
   const auto& result = record.results()[i];

@@ -6,7 +6,7 @@
 
 namespace parallax::tools {
 
-/// What a Markdown summary begins with, so that a newer one may take its place.
+/// First line of a Markdown summary, so that a newer one may take its place.
 inline constexpr const char* kMarkdownMark = "<!-- parallax suite -->";
 
 /// "3 passed, 1 failed, 2 without an answer ..." and a line end. A pass that was not run, and one
@@ -16,11 +16,11 @@ std::string summary_text(const SuiteRecord& record);
 /// The same for `--json`, with every case.
 std::string summary_document(const SuiteRecord& record);
 
-/// A table of the cases that want attention, for a pull request or a job's page.
+/// A table of the cases that need attention, for a pull request or a job's page.
 std::string summary_markdown(const SuiteRecord& record);
 
-/// What GitHub's runners show beside the files: a command line for each case that failed, gave no
-/// answer, is flaky or did not finish.
+/// Annotations that GitHub's runners show beside the files: a command line for each case that
+/// failed, gave no answer, is flaky or did not finish.
 std::string github_annotations(const SuiteRecord& record);
 
 }  // namespace parallax::tools

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// One trace more than all that are expected; 0, for all, where nobody knows how many these are.
+/// One trace more than expected; 0, for all, if the expected number is unknown.
 std::int64_t one_too_many(const harness::TraceExpectation& expect) {
   if (expect.traces) return *expect.traces + 1;
   base::DiagnosticSink unread;
@@ -35,7 +35,7 @@ std::int64_t one_too_many(const harness::TraceExpectation& expect) {
 
 enum class Constraints : std::uint8_t { kCount, kIgnored };
 
-/// What every process of the case is told: horizon, constraints, limits, permissions, models.
+/// Options for every process of the case: horizon, constraints, limits, permissions, models.
 CommandWords model_words(const harness::ManifestCase& one, const RunnerOptions& options,
                          Constraints constraints = Constraints::kCount) {
   CommandWords command;
@@ -65,7 +65,7 @@ CommandWords traces_command(const harness::ManifestCase& one, const RunnerOption
   return command;
 }
 
-/// What the document of `parallax traces --json` says against the expected number.
+/// Compares the document of `parallax traces --json` with the expected number.
 void compare_count(const harness::TraceExpectation& expect, const std::string& document,
                    CaseResult& result) {
   const auto found = base::parse_json(document);
@@ -74,7 +74,7 @@ void compare_count(const harness::TraceExpectation& expect, const std::string& d
     return;
   }
   const auto traces = found.value("traces", std::int64_t{-1});
-  // Complete up to the horizon is all that a case asks for.
+  // A case only asks for completeness up to the horizon.
   const bool complete = found.value("exploration", "stopped") != "stopped";
   if (traces == *expect.traces && complete == expect.complete) return;
   const auto phrase = [](std::int64_t count, bool all) {
@@ -84,7 +84,7 @@ void compare_count(const harness::TraceExpectation& expect, const std::string& d
                                         phrase(*expect.traces, expect.complete)));
 }
 
-/// Of a model that has lost all its traces: the axioms that contradict each other.
+/// Adds the axioms that contradict each other, for a model without traces.
 void add_blame(const harness::ManifestCase& one, const std::string& document,
                const RunnerOptions& options, Footprint& footprint, const std::atomic<bool>& stop,
                CaseResult& result) {
@@ -97,13 +97,13 @@ void add_blame(const harness::ManifestCase& one, const std::string& document,
   if (!why.empty()) result.problems.push_back("these contradict each other:\n" + why);
 }
 
-/// Is this what `parallax traces` has printed, so that a newer list may take its place?
+/// Is this output of `parallax traces`, so that a newer list may replace it?
 bool is_list_of_traces(std::string_view text) {
   return text.find_last_not_of('\n') == std::string_view::npos || listed_traces(text);
 }
 
-/// Why the golden file must not be written; empty: it may. Manifests come from others: theirs must
-/// replace no model, no manifest and no file that other programs read.
+/// Why the golden file must not be written; empty: it may. Manifests come from others, so a golden
+/// file must replace no model, no manifest and no file that other programs read.
 std::string unfit_for_golden(const std::string& path, const fs::path& folder,
                              const base::Result<std::string>& text) {
   if (!base::lies_below(path, folder)) return "does not lie below the manifest's folder";
@@ -116,7 +116,7 @@ std::string unfit_for_golden(const std::string& path, const fs::path& folder,
   return {};
 }
 
-/// Says which axiom excludes a trace that was expected.
+/// Names the axiom that excludes an expected trace.
 std::string why_lost(const harness::ManifestCase& one, const ListedTrace& lost,
                      const RunnerOptions& options, Footprint& footprint,
                      const std::atomic<bool>& stop) {
@@ -133,7 +133,7 @@ std::string why_lost(const harness::ManifestCase& one, const ListedTrace& lost,
   return refusal_of(child.out);
 }
 
-/// Names a trace that was lost, and what excludes it, and one that was gained.
+/// Names a lost trace with the axiom that excludes it, and a gained one.
 void add_witnesses(const harness::ManifestCase& one, const std::string& golden,
                    const std::string& found, const RunnerOptions& options, Footprint& footprint,
                    const std::atomic<bool>& stop, CaseResult& result) {
@@ -184,7 +184,8 @@ void compare_golden(const std::string& path, const std::string& text, const fs::
   }
 }
 
-/// What `parallax verify --json` says of a violated property: where, and which part of it breaks.
+/// Words for a property that `parallax verify --json` found violated: where, and which part of it
+/// breaks.
 std::string violation_words(const nlohmann::json& found) {
   auto out = fmt::format("violated at timepoint {}", found.value("timepoint", 0));
   const auto broken = found.find("broken");
@@ -245,7 +246,7 @@ void run_traces(const harness::ManifestCase& one, const fs::path& manifest,
   }
   if (!one.expect.lists_traces()) return;
   const auto command = traces_command(one, options);
-  // A whole list that is the golden one has its number of traces.
+  // A complete list equal to the golden file has the right number of traces.
   const bool listed = options.ends_early && one.expect.golden && one.expect.complete;
   if (one.expect.traces && !listed) {
     auto words = command;

@@ -12,7 +12,7 @@
 
 namespace parallax::tools {
 
-/// Holds the traces of a case's models against what its manifest expects of them.
+/// Compares the traces of a case's models with the expectations of its manifest.
 void run_traces(const harness::ManifestCase& one, const std::filesystem::path& manifest,
                 const RunnerOptions& options, Footprint& footprint, const std::atomic<bool>& stop,
                 CaseResult& result);

@@ -28,7 +28,7 @@ std::string end_of(const fs::path& path) {
   return out;
 }
 
-/// Does the file end like one, by a line that counts traces?
+/// Does the file end like a list of traces, by a line that counts them?
 bool is_golden(const fs::path& path) {
   const auto end = end_of(path);
   return end.find('\n') != std::string::npos && listed_traces(end).has_value();

@@ -27,15 +27,15 @@ namespace {
 using Json = nlohmann::json;
 using Params = std::map<std::string, double>;
 
-/// What the scenario asks for is not there.
+/// The scenario asks for something that is not there.
 struct Unsupported : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-/// The start cannot be.
+/// The start is impossible.
 struct InvalidStart : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-/// The simulator has failed: never an observation.
+/// The simulator has failed, which is never reported as an observation.
 struct Lost : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -78,15 +78,15 @@ class Pusher {
   double time_step() const { return model_->opt.timestep; }
   double time() const { return data_->time; }
 
-  /// From the next reset on; 0: no frames.
+  /// Sets the interval of recorded frames from the next reset on; 0: no frames.
   void record(double interval_s) { interval_s_ = interval_s; }
-  /// What moved since the last call.
+  /// Returns the frames recorded since the last call.
   Json take_frames() { return std::exchange(frames_, Json::array()); }
 
   void reset(const Params& start, std::uint64_t seed) {
     noise_.seed(seed);
     mj_resetData(model_.get(), data_.get());
-    // The table is not the same everywhere: that is the noise. Of two frictions the larger counts.
+    // Noise: the friction of the table varies. The larger of two frictions counts.
     model_->geom_friction[3 * table_] = 0.5 * std::exp(0.1 * normal());
     rail() = start.at("rail.x");
     mjtNum* box = data_->qpos + model_->jnt_qposadr[box_];

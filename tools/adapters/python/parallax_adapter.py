@@ -178,7 +178,7 @@ class Adapter:
         self._limit_at, self._is_over, self._ready = math.inf, False, False
         self._interval, self._frames, self._next_frame = 0.0, [], 0.0
 
-    # What a program declares.
+    # Declarations of a program.
 
     def param(self, name, unit="1", settable=False, default=None, lower=None, upper=None):
         """A variable of the state. A start outside of `lower` and `upper` is an invalid one; what
@@ -220,7 +220,7 @@ class Adapter:
 
         return declare
 
-    # What an action calls.
+    # Functions for actions.
 
     def advance(self, seconds):
         """Simulated time passes. Ends the action where its time limit is reached."""

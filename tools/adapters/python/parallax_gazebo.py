@@ -64,7 +64,7 @@ class GazeboAdapter(Adapter):
         self._extra_reset = self._extra_observe = None
         self._reset, self._observe = self._put, self._look
 
-    # What a program declares.
+    # Declarations of a program.
 
     def place(self, param, entity, axis, **settable):
         """Where an entity is: `x`, `y` or `z` in metres, or `yaw` in radians about the vertical."""
@@ -98,7 +98,7 @@ class GazeboAdapter(Adapter):
 
         self.action(name, required=required, optional=optional)(call)
 
-    # What an action calls.
+    # Functions for actions.
 
     def step(self, count=1):
         """Steps of the world's physics. Ends the action where its time limit is reached."""

@@ -70,7 +70,7 @@ class RosAdapter(Adapter):
 
     def run(self):
         super().run()
-        # What rospy does at the end may take longer than anybody waits.
+        # The shutdown of rospy may take longer than anybody waits.
         closing = threading.Thread(target=rospy.signal_shutdown, args=("closed",), daemon=True)
         closing.start()
         closing.join(1.0)

@@ -57,7 +57,7 @@ class WebotsAdapter(Adapter):
         self._reset, self._observe = self._put, self._look
         self.robot = None  # the Supervisor, from the first request on
 
-    # What a program declares.
+    # Declarations of a program.
 
     def place(self, param, node, axis, **settable):
         """Where the node with this DEF name is: `x`, `y` or `z` in metres, or `yaw` in radians about the
@@ -84,7 +84,7 @@ class WebotsAdapter(Adapter):
         self._extra_observe = function
         return function
 
-    # What an action calls.
+    # Functions for actions.
 
     def device(self, name):
         """A device of the robot; sensors are switched on when they are first asked for."""

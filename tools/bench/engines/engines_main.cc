@@ -1,5 +1,5 @@
-// parallax_engine_table [SCENARIO...]: how far the machines of docs/physics.md are off, by engine
-// and step; of scenarios, how fast each engine simulates their first trace, and in what memory.
+// parallax_engine_table [SCENARIO...]: errors of the machines of docs/physics.md, by engine and
+// step; for scenarios, the speed and memory of each engine in simulating their first trace.
 
 #include <fmt/core.h>
 #include <sys/resource.h>
@@ -101,7 +101,7 @@ struct Speed {
   std::int64_t clean = 0;  // that ended at all
 };
 
-/// In a process of its own: some simulations of the first trace.
+/// Simulates the first trace several times, in a process of its own.
 Speed simulate(const char* file, EngineKind engine) {
   Context context;
   auto loaded = load_scenario_model(file, context);

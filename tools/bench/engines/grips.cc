@@ -108,7 +108,7 @@ class Gripper {
     finger_ = *world_->layout().find_slider("finger");
   }
 
-  /// The rail is where `way_m` says, by time from now.
+  /// Moves the rail along `way_m`, a function of the time from now.
   void go_on(double time_s, const std::function<double(double)>& way_m) {
     const double step_s = world_->timestep_s();
     const auto steps = std::lround(time_s / step_s);
@@ -121,7 +121,7 @@ class Gripper {
     }
   }
 
-  /// Of the load from the carriage.
+  /// Position of the load relative to the carriage.
   Vector3d offset() const { return place("load") - place("carriage"); }
 
  private:
@@ -136,7 +136,7 @@ class Gripper {
 
 constexpr double kSettling_s = 0.1, kWatched_s = 0.4, kSlip_m = 0.002;
 
-/// Where it turns from slipping to holding, to a thousandth.
+/// The least value that holds, by bisection to a thousandth.
 double least_that_holds(const std::function<bool(double)>& holds) {
   double slips = 0.3, held = 1.7;
   while (held - slips > 1e-3) {
@@ -150,8 +150,8 @@ double force_n(double share, double pull_m_s2) {
   return share * kMass_kg * pull_m_s2 / (2.0 * kPadFriction);
 }
 
-/// Of a load that is in rest or slips by Coulomb's law while what holds it moves up and down: how
-/// far it is after `time_s`. Its pads are at `rise_m_s2`.
+/// Distance that a load has slipped after `time_s` by Coulomb's law, while its pads move up and
+/// down with the acceleration `rise_m_s2`.
 double slipped_m(double time_s, double force_n, const std::function<double(double)>& rise_m_s2) {
   constexpr int kSteps = 200000;
   const double h = time_s / kSteps, most_m_s2 = 2.0 * kPadFriction * force_n / kMass_kg;

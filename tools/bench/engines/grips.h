@@ -6,9 +6,9 @@
 
 namespace parallax::tools {
 
-// What holds by friction alone, held against Coulomb's law.
+// Grips that hold by friction alone, compared with Coulomb's law.
 
-/// What the load is to the engine. Both are the same box.
+/// Shape of the load in the engine. Both are the same box.
 enum class LoadForm : std::uint8_t { kBox, kHull };
 
 /// A load between two pads, one of which a motor presses against it, on a carriage that is moved so
@@ -22,11 +22,11 @@ double least_grip(harness::EngineKind engine, double timestep_s, double angle_ra
 /// that holds it, as a share of the tangent of the slope.
 double least_slope_friction(harness::EngineKind engine, double timestep_s, double turn_rad);
 
-/// How fast a load creeps that is held with twice the force that it needs [m/s].
+/// The speed at which a load creeps that is held with twice the force that it needs [m/s].
 double creep_m_s(harness::EngineKind engine, double timestep_s, LoadForm form = LoadForm::kBox);
 
-/// A load between two pads that are shaken up and down so hard that it slips at times: by how much
-/// it is off after a second, against Coulomb's law [m].
+/// Error after a second, against Coulomb's law, of a load between two pads that are shaken up and
+/// down so hard that it slips at times [m].
 double shaken_load(harness::EngineKind engine, double timestep_s);
 
 }  // namespace parallax::tools

@@ -80,7 +80,7 @@ class Run {
 
 using Angles = std::array<double, 4>;  // two angles and their rates
 
-/// By Runge and Kutta's method of fourth order.
+/// The fourth-order Runge-Kutta method.
 Angles solved(Angles state, double time_s, const std::function<Angles(const Angles&)>& change) {
   constexpr int kSteps = 20000;
   const double h = time_s / kSteps;
@@ -187,8 +187,8 @@ double hinged_door(EngineKind engine, double timestep_s) {
                   before * std::exp(-kDamping_nm_s * kTime_s / inertia));
 }
 
-/// A sphere in the corner of a tray that is driven up at a slant and stops. Its flight is held
-/// against the parabola through what it does as soon as it touches nothing.
+/// A sphere in the corner of a tray that is driven up at a slant and stops. Its flight is compared
+/// with the parabola from its state when it first touches nothing.
 double thrown_sphere(EngineKind engine, double timestep_s) {
   constexpr double kSpeed_m_s = 4.0, kTime_s = 0.6, kSide_m = 0.3;
   BodySpec tray = body_of("tray", ShapeForm::kBox, {kSide_m, kSide_m, 0.04}, {0.0, 0.0, 1.0}, 5.0);

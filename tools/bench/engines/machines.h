@@ -7,11 +7,11 @@
 
 namespace parallax::tools {
 
-/// A machine whose motion is known in closed form, or from its equations of motion solved by Runge
-/// and Kutta's method at a step so short that its own error does not show.
+/// A machine whose motion is known in closed form, or from its equations of motion, solved by the
+/// Runge-Kutta method with a step so short that its own error is negligible.
 struct Machine {
   std::string name, held_against, unit;
-  /// How far its motion is off with this engine at steps of this length.
+  /// Error of its motion with this engine at steps of this length.
   double (*error)(harness::EngineKind engine, double timestep_s);
   double bound;  // of the error at steps of 2 ms, in every engine: what a test demands
   double none;   // an error below this is as good as none

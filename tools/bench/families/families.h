@@ -17,8 +17,8 @@ inline constexpr int kMaxFamilyParameter = 1'000'000;
 /// first and lit at the end. 2^(lamps*(horizon-1)) traces.
 std::string lamps_model(int lamps, int horizon);
 
-/// The same lamps, and none is flipped both in the first and in the last of at least 3 steps: a
-/// text that ties far timepoints together. (3*2^(horizon-3))^lamps traces.
+/// The same lamps, but none is flipped both in the first and in the last of at least 3 steps: a
+/// text that ties distant timepoints together. (3*2^(horizon-3))^lamps traces.
 std::string distant_model(int lamps, int horizon);
 
 /// A robot carries `things` things between the ends of a row of `rooms` rooms, one at a time: the
@@ -57,10 +57,10 @@ struct Transfer {
 /// One legal transfer for each step, drawn by a generator of our own.
 std::vector<Transfer> told_transfers(const BankSize& size);
 
-/// All transfers are told. One trace.
+/// All transfers are given. One trace.
 std::string bank_projection_model(const BankSize& size);
 
-/// At most one transfer a step, none is told; at the end the first account has everything.
+/// At most one transfer a step, none of them given; at the end the first account has everything.
 std::string bank_planning_model(const BankSize& size);
 
 /// A thing is dropped `horizon` - 2 units above the ground, falls one unit a step by a trajectory,

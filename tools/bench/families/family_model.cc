@@ -14,7 +14,7 @@ using Parameters = std::vector<int>;
 struct Family {
   std::string_view name;
   std::size_t parameters = 0;
-  std::size_t may_be_negative = 0;  // the last so many
+  std::size_t may_be_negative = 0;  // number of last parameters
   bool (*fits)(const Parameters&) = nullptr;
   std::string (*model)(const Parameters&) = nullptr;
   std::string (*program)(const Parameters&) = nullptr;
@@ -26,7 +26,7 @@ bool any(P) { return true; }
 
 BankSize bank(P p) { return {p[0], p[1], p[2], p[3]}; }
 
-/// Else there is nobody to pay, or everyone's share is nothing.
+/// Else there is nobody to pay, or every share is zero.
 bool has_transfers(P p) { return p[0] >= 2 && p[1] >= p[0]; }
 
 bool has_steps(P p) {

@@ -126,7 +126,7 @@ HoldsAt(SitsIn(ring1,hole),time) & HoldsAt(SitsIn(ring2,hole),time) -> ring1=rin
 )",
       pigeons, holes, numbered_names("Pigeon", pigeons), numbered_names("Ring", pigeons),
       numbered_names("Hole", holes), numbered_names("Door", holes));
-  // What sits in a hole is the ring of the pigeon that has come home.
+  // The ring in a hole is that of the pigeon that has come home.
   for (int i = 1; i <= pigeons; ++i) {
     text += fmt::format(
         "[hole,time] Releases(ComeHome(Pigeon{0}),SitsIn(Ring{0},hole),time).\n"

@@ -13,10 +13,10 @@ std::string numbered_names(std::string_view prefix, int count);
 /// Where a thing of the robot family lies first: odd ones in room 1, even ones in the last.
 inline int first_room(int thing, int rooms) { return thing % 2 == 1 ? 1 : rooms; }
 
-// The families as a clingo user would write them by hand: logic programs whose rules of the
-// discrete event calculus are cut down to what such a model needs. Nothing is open but the start,
-// the events and what is released; effects are derived of events that happen only. The answer sets
-// are the traces, one each.
+// The families as a clingo user would write them by hand: logic programs with only those rules of
+// the discrete event calculus that such a model needs. Only the start, the events and released
+// fluents are open; effects are derived for events that happen. The answer sets are the traces, one
+// each.
 
 /// The rules of the calculus. The models say `fluent`, `happens`, `initiates`, `terminates`,
 /// `releases`; `holds` and `happens` are shown.

@@ -1,4 +1,4 @@
-// parallax_proof_table: proofs of drives in random worlds, held against samples.
+// parallax_proof_table: proofs of drives in random worlds, compared with samples.
 
 #include <fmt/format.h>
 
@@ -45,7 +45,7 @@ struct Row {
   std::int64_t contradicted = 0;  // of them, against the verdict of their box
 };
 
-/// What the controller itself says in the engine, for starts of decided boxes.
+/// Asks the controller itself, in the engine, about starts in decided boxes.
 void ask_controller(const ProofWorld& world, const harness::TestCertificate& test,
                     std::uint64_t number, std::int64_t starts, Row& row) {
   harness::OdeSimulator simulator(world.spec);

@@ -1,4 +1,4 @@
-// parallax_rare_table: are the intervals of rare events as often right as they say, and how wide?
+// parallax_rare_table: coverage and width of the intervals for rare events.
 
 #include <fmt/format.h>
 
@@ -31,8 +31,8 @@ struct TableOptions {
                                           RareEventMethod::kSplitting};
 };
 
-/// Uniform runs after which the ends of Clopper's and Pearson's interval have the ratio 2, if as
-/// many fail as are expected.
+/// Number of uniform runs after which the ends of the Clopper-Pearson interval have the ratio 2, if
+/// as many fail as are expected.
 double plain_runs(double probability) {
   for (double failures = 1.0;; failures += 1.0) {
     const double all = failures / probability;

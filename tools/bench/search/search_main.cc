@@ -26,7 +26,8 @@ using harness::StrategyKind;
 
 constexpr double kCapInUniformRuns = 20.0;  // searches end at 20 / p simulations
 constexpr int kResamples = 2000;            // of the bootstrap
-// Seeds of `uniform` for each of the others: all are held against it, and it costs next to nothing.
+// Seeds of `uniform` for each of the others: all are compared with it, and it costs next to
+// nothing.
 constexpr std::size_t kUniformSeeds = 10;
 constexpr std::size_t kSampleSize = 4'000'000;
 
@@ -56,7 +57,7 @@ std::vector<Row> rows() {
   return out;
 }
 
-/// Simulations up to and with the first discrepancy; the cap if there was none by then.
+/// Simulations up to and including the first discrepancy; the cap if there was none.
 double runs_until_found(const SearchWorld& world, std::size_t share, const Row& row,
                         std::uint64_t seed) {
   const auto cap = static_cast<std::size_t>(kCapInUniformRuns / world.shares()[share]);
@@ -149,7 +150,7 @@ void print_world(const SearchWorld& world, const Options& options, Goal& informa
       auto& goal = world.is_flat() ? flat : informative;
       if (!world.is_flat() && p > 0.001) continue;
       ++goal.all;
-      // By the whole interval: its lower end alone would nearly always do.
+      // Uses the whole interval: its lower end alone would nearly always pass.
       const bool met = ratio.upper <= (world.is_flat() ? 1.3 : 0.1);
       if (met) {
         ++goal.met;

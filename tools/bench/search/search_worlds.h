@@ -21,17 +21,18 @@ namespace parallax::bench {
 ///     flat    the pocket of decoy, of which nothing is told but that a start fails
 class SearchWorld {
  public:
-  /// The border lies where `sample_size` points of the cube, drawn from a fixed seed, say.
+  /// The border is estimated from `sample_size` points of the cube, drawn from a fixed seed.
   SearchWorld(std::string_view name, std::size_t dimensions, std::vector<double> shares,
               std::size_t sample_size);
 
   const std::string& name() const { return name_; }
   std::size_t dimensions() const { return dimensions_; }
   const std::vector<double>& shares() const { return shares_; }
-  /// Nothing is told of a start but whether it fails.
+  /// Margins tell only whether a start fails.
   bool is_flat() const { return name_ == "flat"; }
 
-  /// What a simulation from this point would show where discrepancies have the share of this index.
+  /// The result of a simulation from this point, where the share of discrepancies is
+  /// `shares()[share]`.
   harness::Evaluation evaluate(const harness::UnitPoint& point, std::size_t share) const;
 
  private:

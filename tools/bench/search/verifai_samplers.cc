@@ -17,7 +17,7 @@ using harness::UnitPoint;
 
 constexpr std::size_t kBuckets = 5;
 
-/// What margins count as found.
+/// The margin below which a point counts as found.
 class Threshold {
  public:
   explicit Threshold(bool adaptive) : adaptive_(adaptive) {}

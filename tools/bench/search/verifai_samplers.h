@@ -13,10 +13,10 @@ namespace parallax::bench {
 // anew after their description. All divide each coordinate into buckets and know of a sample only
 // whether its margin is below a threshold, 0 unless the user says otherwise.
 
-/// A law over the buckets of each coordinate. A sample below the threshold raises its buckets'
-/// probability: q = alpha q, and 1 - alpha more for the bucket. alpha = 0.9, 5 buckets. With the
-/// threshold 0 it is uniform until the first discrepancy; `adaptive` gives it what a user can set
-/// by hand: the tenth part of the margins that was least so far.
+/// A distribution over the buckets of each coordinate. A sample below the threshold raises its
+/// buckets' probability: q = alpha q, and 1 - alpha more for the bucket. alpha = 0.9, 5 buckets.
+/// With the threshold 0 it is uniform until the first discrepancy; `adaptive` sets the threshold
+/// that a user may choose by hand: the least tenth of the margins so far.
 std::unique_ptr<harness::SearchStrategy> verifai_cross_entropy(std::size_t dimensions,
                                                                std::uint64_t seed, bool adaptive);
 
