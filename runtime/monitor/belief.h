@@ -55,7 +55,7 @@ struct Disagreement {
 /// The possible states of a model, with the place of its plan's control, according to the reports
 /// so far: exactly those in which some trace of any length is that has these events, with
 /// unobserved ones anywhere between and beside them, and agrees with all observations. A step is
-/// one timepoint; without a step time stands still, but for unobserved events, which the plan's
+/// one timepoint; without a step time stands still, except for unobserved events, which the plan's
 /// control may be waiting for.
 ///
 /// Where the plan's unrolling was cut, anything that the axioms admit may follow; once nothing else
@@ -73,12 +73,12 @@ class Belief {
   void restart();
   Admission observe(const Observation& observed);
   Admission step(const ToldStep& told);
-  /// Would the step be admitted? Nothing changes.
+  /// Would the step be admitted? Changes nothing.
   bool admits(const ToldStep& told);
 
   /// None: there are more than can be kept, which the next observations may change.
   std::optional<std::size_t> size() const;
-  std::size_t largest() const { return largest_; }  // of all sizes so far
+  std::size_t largest() const { return largest_; }  // the maximum so far
   std::size_t remembered_ways() const { return way_count_; }
   const std::string& undecided_because() const { return undecided_; }
 
@@ -156,7 +156,7 @@ class Belief {
   std::vector<std::optional<std::size_t>> cut_bit_;     // by cut of the plan
   std::vector<std::size_t> control_bits_;               // all of the plan's control
   enum class Unseen : std::uint8_t { kNever, kUnobserved, kPerformed, kDemanded };
-  std::vector<Unseen> unseen_;           // by event; performed: unobserved, by the plan alone
+  std::vector<Unseen> unseen_;           // by event; kPerformed: unobserved, by the plan alone
   std::vector<std::uint32_t> demanded_;  // by event: its index in literals_.demanded
   StepLiterals literals_;
   std::unique_ptr<WindowQuery> start_;
@@ -168,7 +168,7 @@ class Belief {
   std::vector<ToldStep> labels_;
   std::unordered_map<std::string, std::uint32_t> label_ids_;
   std::unordered_map<std::uint64_t, std::vector<StateId>> ways_;  // by label and state
-  std::size_t way_count_ = 0;  // those that lead nowhere count, too
+  std::size_t way_count_ = 0;  // including those that lead nowhere
 
   bool is_settled_ = false;  // else `known_` is all that is known of the start
   Filter known_;

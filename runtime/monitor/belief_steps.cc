@@ -186,7 +186,7 @@ const std::vector<Belief::StateId>* Belief::successors(StateId state, std::uint3
   return &ways_.emplace(key, *std::move(found)).first->second;
 }
 
-/// Everything that unobserved steps lead to as well.
+/// Adds all states that unobserved steps lead to.
 std::optional<std::vector<Belief::StateId>> Belief::closed(std::vector<StateId> states) {
   if (options_.unobserved.empty()) return states;
   if (last_closed_.first == states) return last_closed_.second;

@@ -112,9 +112,9 @@ class SlotWriter {
     return model_.clause_is_definition[c] && !clause.empty() && is_auxiliary(clause.front());
   }
 
-  /// A part of a formula may be about one state and used by what binds before it and behind it.
-  /// Each timepoint at which something binds gets auxiliaries of its own, with what defines them:
-  /// they say the same of everything else.
+  /// A part of a formula may be about one state and be used by clauses that bind before it and
+  /// behind it. Each timepoint at which a clause binds gets auxiliaries of its own, with their
+  /// definitions, which say the same about everything else.
   void copy_parts(std::span<const Literal> clause, Timepoint binds) {
     std::vector<std::size_t> todo;
     const auto note = [&](std::span<const Literal> literals) {
@@ -249,7 +249,8 @@ class SlotWriter {
     }
   }
 
-  /// The clause as it binds at a timepoint, and what defines its parts unless that is there.
+  /// Adds the clause as it binds at a timepoint, and the definitions of its parts unless they are
+  /// there.
   void write(std::size_t root, Timepoint binds) {
     std::vector<std::size_t> todo = {root};
     while (!todo.empty()) {

@@ -46,7 +46,7 @@ void find_phases(StepPart& out) {
   out.comes_after = static_cast<std::uint32_t>(begin);
 }
 
-/// Clauses over variables without a timepoint, which no window has: can they hold at all?
+/// Clauses over variables without a timepoint, which belong to no window: can they hold at all?
 bool can_begin(const CompiledModel& model) {
   const auto solver = make_cadical_solver();
   for (std::size_t c = 0; c < model.clauses.size(); ++c) {
@@ -158,7 +158,7 @@ class Parting {
   std::vector<std::vector<std::size_t>> definitions_;  // by fixed auxiliary: clauses
 };
 
-/// Empty, or why the parts make no steps.
+/// Empty, or the reason why the parts make no steps.
 std::string split_parts(StepWindows& out, const std::vector<std::int8_t>& values) {
   if (out.first_plan_slot == out.last_plan_slot) {
     out.axioms = {out.layered.steps, out.layered.step_at, std::nullopt};

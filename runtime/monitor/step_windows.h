@@ -45,7 +45,7 @@ struct StepWindows {
   std::vector<std::uint32_t> cuts;       // of the plan's slots, by PlanCutId where known
 
   bool goes_on() const { return axioms.comes_after && plan.comes_after; }
-  /// The clauses of a step that the axioms take from one phase and the plan from another.
+  /// The clauses of a step that takes the axioms from one phase and the plan from another.
   WindowClauses joined(std::uint32_t axiom_phase, std::uint32_t plan_phase) const;
 };
 
@@ -57,8 +57,8 @@ enum class Beyond : std::uint8_t {
 
 /// Splits a model, or says why it has no steps: "the clauses of `...` look at more than two
 /// neighbouring timepoints". The steps are those of every trace up to the model's horizon, and of
-/// longer ones where the windows before the horizon repeat themselves: axioms about single
-/// timepoints beyond it say nothing, as everywhere. Linear in the clauses.
+/// longer ones if the windows before the horizon repeat themselves; axioms about single timepoints
+/// beyond it say nothing, as everywhere. Linear in the clauses.
 std::variant<std::unique_ptr<StepWindows>, std::string> step_windows(
     const compiler::CompiledModel& model, Beyond beyond = Beyond::kTheSame);
 

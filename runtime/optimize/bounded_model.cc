@@ -14,8 +14,8 @@ using compiler::CompiledModel;
 using compiler::Literal;
 using compiler::Timepoint;
 
-/// "At least `value`", for each value that the sum can have, ascending; those from a largest one on
-/// are one.
+/// Literals for "at least `value`", for each value that the sum can have, ascending; values from a
+/// largest one on are merged.
 struct Reached {
   std::int64_t value;
   Literal literal;

@@ -15,13 +15,13 @@ enum class BoundKind : std::uint8_t {
   kBetter,
 };
 
-/// The model and, as clauses, that its objectives are bounded by `values`, in traces of the full
-/// horizon or, where it has state constraints, up to a hit. How much has been added up by each
-/// timepoint is counted by a generalized totalizer (Joshi, Martins and Manquinho 2015) in both
-/// directions, so that its atoms are functions of the others. Nothing is said of the rest: traces
-/// of the model within the bound and those of the result are the same.
+/// The model with clauses that bound its objectives by `values`, in traces of the full horizon or,
+/// where it has state constraints, up to a hit. The sum up to each timepoint is counted by a
+/// generalized totalizer (Joshi, Martins and Manquinho 2015) in both directions, so that its atoms
+/// are functions of the others. Nothing else is constrained: the result has the same traces as the
+/// model within the bound.
 ///
-/// None: the sums that can come about are too many (more than `most_clauses` clauses).
+/// None: the sums have too many possible values (more than `most_clauses` clauses).
 std::optional<compiler::CompiledModel> with_bound(const compiler::CompiledModel& model,
                                                   std::span<const std::int64_t> values,
                                                   BoundKind kind,

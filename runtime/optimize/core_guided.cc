@@ -119,8 +119,8 @@ void CoreGuidedSearch::shorten(std::vector<Literal>& core) {
   }
 }
 
-/// The literals cannot all be kept: the lower bound rises by the least of their weights. False: no
-/// literal is to blame.
+/// Handles a core: its literals cannot all be kept, so the lower bound rises by the least of their
+/// weights. False: the core is empty.
 bool CoreGuidedSearch::relax(std::vector<Literal> core) {
   if (core.empty()) return false;
   ++cores_;
@@ -145,7 +145,7 @@ bool CoreGuidedSearch::relax(std::vector<Literal> core) {
   return true;
 }
 
-/// One of them is broken; that it is no more than one is assumed from now on.
+/// Counts the broken literals of a core. One is broken; from now on, no more than one is assumed.
 void CoreGuidedSearch::count(const Core& core) {
   Counter counter;
   for (const auto literal : core.literals) counter.broken.push_back(~literal);
@@ -199,7 +199,7 @@ void CoreGuidedSearch::next_level() {
   level_ = most / 2 + 1;
 }
 
-/// A trace with the least value is known: from now on all have it.
+/// A trace with the least value is known: requires that value from now on.
 void CoreGuidedSearch::settle() {
   for (const auto& core : std::exchange(uncounted_, {})) count(core);
   for (const auto& [literal, soft] : softs_) harden(Literal::from_dimacs(literal));
@@ -210,7 +210,7 @@ SolveStatus CoreGuidedSearch::minimize(const compiler::Objective& objective,
                                        std::optional<std::int64_t> below) {
   prepare(objective);
   if (below) upper_ = *below - 1;
-  // Whatever stops the search, there is a trace to show.
+  // A first trace, to have one to show whatever stops the search.
   const auto first = solve({});
   if (first != SolveStatus::kSatisfiable) return first;
   while (!upper_ || lower_ <= *upper_) {

@@ -29,8 +29,9 @@ struct Optimum {
 
 /// Finds a trace with the lexicographically least values of `session.model().objectives`: at the
 /// full horizon, or, where state constraints end traces, of any length up to it, ending at the
-/// first hit; of equals a shortest one. Lengths are looked at in turn, each only as far as it can
-/// be better than those before. The session is fresh, and of no use afterwards.
+/// first hit. Among equal traces it takes a shortest one. Lengths are searched in turn, each only
+/// as far as it can be better than those before. The session is fresh, and cannot be used
+/// afterwards.
 Optimum find_optimum(SolverSession& session);
 
 }  // namespace parallax::runtime

@@ -27,7 +27,7 @@ struct ProofStatistics {
   std::int64_t ignored_deletions = 0;  // of clauses that are not there, or that support a literal
 };
 
-/// Checks a DRAT refutation forwards, a step at a time (Wetzler, Heule and Hunt 2014).
+/// Checks a DRAT refutation forwards, one step at a time (Wetzler, Heule and Hunt 2014).
 ///
 /// A clause may be added if the negation of all its literals leads to a conflict by unit
 /// propagation (RUP), or if that is so for its resolvents on its first literal with every clause
@@ -53,7 +53,7 @@ class DratChecker {
   Outcome add_lemma(std::span<const std::int64_t> clause);
   Outcome remove_clause(std::span<const std::int64_t> clause);
 
-  /// A contradiction was reached: every further step is right.
+  /// True once a contradiction was reached: then every further step is right.
   bool refuted() const { return refuted_; }
   /// The largest variable that a clause may have.
   std::int64_t max_variable() const { return max_variable_; }

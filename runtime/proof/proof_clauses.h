@@ -26,8 +26,8 @@ inline std::uint32_t variable(Code code) { return code >> 1U; }
 
 namespace parallax::runtime {
 
-/// The clauses that a proof stands on: one array, found again by their literals in any order. A
-/// clause that is there twice has to be removed twice. Clauses keep the order of their addition.
+/// The clauses of a proof in one array, found by their literals in any order. A clause that was
+/// added twice has to be removed twice. Clauses keep the order of their addition.
 class ProofClauses {
  public:
   using Code = proof_literal::Code;

@@ -51,11 +51,11 @@ bool has_ending_clauses(const CompiledModel& model);
 /// Is this one of them? A definition never is.
 bool ends_with_trace(const CompiledModel& model, std::size_t clause);
 
-/// One solver for one compiled model, whose horizon is chosen per call. Every clause of timepoint
-/// t carries the guard of t; a call with horizon n assumes the guards 1 .. n and drops the others,
-/// so learned clauses survive from one horizon to the next. As a rule the solver is handed the
-/// clauses of a timepoint, and comes to know their variables, with the first call that needs them:
-/// short horizons pay nothing for the long one.
+/// One solver for one compiled model, whose horizon is chosen per call. Every clause of timepoint t
+/// carries the guard of t; a call with horizon n assumes the guards 1 .. n and drops the others, so
+/// learned clauses survive from one horizon to the next. As a rule the clauses of a timepoint, and
+/// with them its variables, are added with the first call that needs them: short horizons pay
+/// nothing for the long one.
 class SolverSession {
  public:
   SolverSession(const CompiledModel& model, std::unique_ptr<SatSolver> solver,

@@ -8,8 +8,8 @@
 
 namespace parallax::runtime {
 
-/// Tells constants of a model apart by what its clauses say of them: colour refinement on the graph
-/// of constants, atoms and clauses (one-dimensional Weisfeiler and Leman 1968). No symmetry takes a
+/// Distinguishes constants of a model by the clauses about them: colour refinement on the graph of
+/// constants, atoms and clauses (one-dimensional Weisfeiler and Leman 1968). No symmetry takes a
 /// constant to one of another colour; equal colours promise nothing.
 class ConstantColours {
  public:
@@ -19,8 +19,8 @@ class ConstantColours {
   ConstantColours(const compiler::CompiledModel& model, const NamedAtoms& atoms,
                   const PermutationCheck& check);
 
-  /// Where each of `marked` is told apart by its place in the list. Refined until no round tells
-  /// more apart; `rounds` gets how many those were.
+  /// Colours in which each of `marked` is distinguished by its place in the list. Refined until a
+  /// round distinguishes nothing more; `rounds` gets the number of rounds.
   Colours refined(std::span<const std::uint32_t> marked, std::size_t& rounds);
   /// The colours after this many rounds, for comparison with colours that took as many.
   Colours after(std::span<const std::uint32_t> marked, std::size_t rounds);

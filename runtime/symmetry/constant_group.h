@@ -27,7 +27,7 @@ struct ConstantGroup {
   std::vector<std::string> constants;
   std::vector<Level> levels;
   /// By level, as far as levels have permutations, and once more: by constant, the number of its
-  /// orbit under that level's group. The levels behind these exchange within the last orbits.
+  /// orbit under that level's group. The levels after these exchange within the last orbits.
   std::vector<std::vector<std::uint32_t>> orbits;
   /// Pair of `one`, which is in the orbit of a level's base, and another constant. Pairs that
   /// permutations of the level take to each other have one kind. The largest kind of each orbit is
@@ -47,7 +47,7 @@ struct GroupParts {
   std::vector<std::vector<std::uint32_t>> orbits;  // by level and once more; none: only exchanges
 };
 
-/// The levels, then all exchanges of constants of one set that are no bases.
+/// The group of the levels, followed by all exchanges of constants of one set that are no bases.
 ConstantGroup group_of(const std::vector<std::string>& constants,
                        const std::vector<std::uint32_t>& set_of, const GroupParts& parts);
 

@@ -23,7 +23,7 @@ struct Interchangeables {
   bool empty() const { return sets.empty() && together.empty(); }
 };
 
-/// A symmetry as the named nodes that it moves: each, and the one whose place it takes.
+/// A symmetry as pairs: a named node that it moves, and the node whose place it takes.
 using NodeMap = std::vector<std::pair<ModelNode, ModelNode>>;
 
 /// Images of the atoms that a symmetry of the constants moves. `map` must have been checked.
@@ -31,7 +31,7 @@ NodeMap moved_nodes(const NamedAtoms& atoms, const ConstantMap& map);
 
 /// Effort of a search for symmetries of several constants at once.
 enum class SymmetryEffort : std::uint8_t {
-  kQuick,     // before anything is known to be hard: some tenths of a second
+  kQuick,     // while nothing is known to be hard: some tenths of a second
   kThorough,  // some seconds
 };
 
@@ -46,7 +46,7 @@ class ModelSymmetry {
   std::span<const NodeMap> generators() const {
     return std::span(generators_).first(is_complete_ ? generators_.size() : exchanges_);
   }
-  /// Also those found by a search that was given up: for questions of existence.
+  /// Includes those found by a search that was given up: for questions of existence.
   std::span<const NodeMap> all() const { return generators_; }
   bool empty() const { return generators_.empty(); }
   const ConstantGroup& group() const { return group_; }

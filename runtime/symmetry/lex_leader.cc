@@ -16,7 +16,7 @@ namespace {
 
 constexpr auto kUnordered = std::numeric_limits<std::size_t>::max();
 
-/// By variable - 1: 1 and -1 of those that a clause of one literal settles.
+/// By variable - 1: 1 or -1 if a clause of one literal settles the value, else 0.
 std::vector<std::int8_t> settled_values(const CompiledModel& model) {
   std::vector<std::int8_t> values(static_cast<std::size_t>(model.variable_count()), 0);
   for (std::size_t c = 0; c < model.clauses.size(); ++c) {

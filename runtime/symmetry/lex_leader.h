@@ -11,17 +11,17 @@
 
 namespace parallax::runtime {
 
-/// Clauses that leave one of fewer symmetric traces cost a solver more than they save.
+/// Minimal number of symmetries for which symmetry-breaking clauses pay: with fewer, they cost a
+/// solver more than they save.
 inline constexpr unsigned long kWorthBreaking = 100;
 
-/// Clauses that of the valuations which symmetries make of each other leave the first one in
-/// lexicographic order (false before true), and as a rule few others: for every generator g, the
-/// valuation is not after the one that g makes of it. The first of an orbit is before all others of
-/// it, so that clauses for any set of symmetries leave it, whatever these generate (Crawford,
-/// Ginsberg, Luks and Roy 1996); and all are compared in one order of the variables, so they hold
-/// together. The clauses are linear in the variables that move (chains of equalities; Aloul,
-/// Sakallah and Markov 2003). In the order of the traces they leave the first trace of a model, and
-/// of every orbit.
+/// Symmetry-breaking clauses that keep the lexicographically first valuation of each orbit (false
+/// before true), and as a rule few others. For every generator g, they require that the valuation
+/// is not after its image under g. The first of an orbit is before all others of it, so that
+/// clauses for any set of symmetries keep it, whatever these generate (Crawford, Ginsberg, Luks and
+/// Roy 1996). All clauses use one order of the variables, so they are consistent together. They are
+/// linear in the variables that move (chains of equalities; Aloul, Sakallah and Markov 2003). In
+/// the order of the traces they keep the first trace of a model, and of every orbit.
 class LexLeader {
  public:
   using AddClause = std::function<void(std::span<const Literal>)>;
@@ -31,12 +31,12 @@ class LexLeader {
   LexLeader(const CompiledModel& model, std::span<const NodeMap> generators,
             const std::vector<std::vector<Literal>>& order);
 
-  /// The clauses over the first `blocks` blocks, as far as they were not made before. Each that
-  /// is left out makes the others weaker, never wrong. Linear in the literals that move.
+  /// Adds the clauses over the first `blocks` blocks, as far as they were not made before. Leaving
+  /// some out weakens the breaking, but is never wrong. Linear in the literals that move.
   void extend(std::size_t blocks, const AddClause& add_clause, const NewVariable& new_variable);
 
  private:
-  /// `first` is at most `second`, as long as all before are equal.
+  /// Requires that `first` is at most `second`, as long as all pairs before are equal.
   struct Pair {
     std::int32_t first = 0, second = 0;
     std::size_t block = 0;
@@ -49,28 +49,28 @@ class LexLeader {
   std::vector<Chain> chains_;
 };
 
-/// The atoms by which valuations are compared in canonical order, block by block: what tells
-/// traces apart (projection_blocks), then in one more block all others of the model's atoms, but
-/// those of a plan's control.
+/// The atoms by which valuations are compared in canonical order, block by block: first those that
+/// distinguish traces (projection_blocks), then in one more block all other atoms of the model,
+/// except those of a plan's control.
 std::vector<std::vector<Literal>> whole_order(const CompiledModel& model,
                                               std::vector<std::vector<Literal>> observed);
 
 /// All atoms of the model by the horizon that they need, for questions about one length after the
-/// other: block n has those of the horizon n.
+/// other: block n has those of horizon n.
 std::vector<std::vector<Literal>> order_by_horizon(const CompiledModel& model);
 
-/// Breaks the symmetry of a session's model under an assumption, for questions whether there is
-/// anything at all: adding that says something of single traces ends it.
+/// Breaks the symmetry of a session's model under an assumption, for questions of existence. Adding
+/// a clause about single traces makes it invalid.
 class SymmetryBreaker {
  public:
   /// `session` outlives the breaker.
   SymmetryBreaker(SolverSession& session, std::span<const NodeMap> generators,
                   const std::vector<std::vector<Literal>>& order);
-  /// The clauses over the first `blocks` blocks are the session's from now on.
+  /// Adds the clauses over the first `blocks` blocks to the session.
   void extend(std::size_t blocks);
-  /// Under it they hold.
+  /// The assumption under which the clauses hold.
   Literal assumption() const { return guard_; }
-  /// They are of no more use.
+  /// Gives the clauses up: they are of no more use.
   void retire();
 
  private:

@@ -27,7 +27,7 @@ inline std::int32_t variable_at(const compiler::CompiledModel& model, ModelNode 
   return variable <= model.base() ? variable : variable + t * model.stride();
 }
 
-/// Where a constant stands as an argument in a printed name, at any depth: bytes of the name.
+/// A place of a constant as an argument in a printed name, at any depth: bytes of the name.
 struct ConstantPlace {
   std::uint32_t begin = 0;
   std::uint32_t size = 0;

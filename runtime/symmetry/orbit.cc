@@ -25,9 +25,9 @@ using Form = std::vector<std::uint32_t>;
 /// Kinds of edges that are no atoms of the model: the length of the trace, returned objects.
 constexpr auto kLength = std::numeric_limits<std::uint32_t>::max();
 
-/// The least form that a group's permutations give a graph, and how many leave the graph as it is.
-/// Permutations are composed level by level: at a node of the search tree, `to` takes the constants
-/// chosen so far to the bases of the levels above.
+/// The least form that a group's permutations give a graph, and the number of those that fix the
+/// graph. Permutations are composed level by level: at a node of the search tree, `to` takes the
+/// constants chosen so far to the bases of the levels above.
 class FormSearch {
  public:
   FormSearch(std::vector<Edge> edges, const ConstantGroup& group)
@@ -106,7 +106,7 @@ class FormSearch {
     }
   }
 
-  /// Where fixing a base leaves some other constants fewer places to go than others of their orbit,
+  /// If fixing a base leaves some other constants fewer places to go than others of their orbit,
   /// they belong together, as a room and its door do.
   void add_ties(const Node& node, std::vector<std::uint64_t>& sums) const {
     if (node.level + 1 >= group_.orbits.size()) return;
@@ -164,7 +164,7 @@ class FormSearch {
     return out;
   }
 
-  /// The graph with constants where the node takes them.
+  /// The graph after replacing the constants as the node maps them.
   Form relabelled(const Node& node) const {
     std::vector<Form> lines;
     for (const auto& edge : edges_) {
@@ -180,7 +180,7 @@ class FormSearch {
     return out;
   }
 
-  /// The leaf that is reached by always taking the first candidate.
+  /// The leaf reached by always taking the first candidate.
   Form first_leaf(Node node) const {
     while (node.level < group_.levels.size()) node = child(node, candidates(node).front());
     return relabelled(node);
@@ -222,8 +222,8 @@ class FormSearch {
     return map;
   }
 
-  /// Candidates that some permutation which leaves the graph as it is takes to each other lead to
-  /// equal subtrees: one is followed for all.
+  /// Candidates that some automorphism of the graph takes to each other lead to equal subtrees: one
+  /// is followed for all.
   std::pair<Form, mpz_class> least(const Node& at) const {
     auto node = at;
     auto places = std::vector<std::size_t>();

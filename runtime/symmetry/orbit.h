@@ -38,8 +38,8 @@ class TraceOrbits {
  public:
   /// `group` outlives the orbits.
   TraceOrbits(const CompiledModel& model, const ConstantGroup& group, Compared compared);
-  /// Exponential in the worst case, for traces that look alike from many constants that no exchange
-  /// connects; a few refinements for others.
+  /// Cost: exponential in the worst case, for traces that look alike from many constants that no
+  /// exchange connects; a few refinements for others.
   Orbit of(const Trace& trace) const;
 
  private:

@@ -73,7 +73,7 @@ void PermutationCheck::prepare() {
   order_auxiliaries();
 }
 
-/// Auxiliaries after those that they are defined by. One in a circle has no rank, and is no image.
+/// Orders auxiliaries after those that define them. One in a cycle has no rank, and is no image.
 void PermutationCheck::order_auxiliaries() {
   std::vector<std::uint32_t> open(definitions_.size(), 0);  // auxiliaries it waits for
   std::vector<ModelNode> ready;
@@ -147,7 +147,7 @@ std::uint64_t PermutationCheck::signature(std::uint32_t constant) const {
   std::uint64_t all = 0;
   for (const auto node : atoms_.mentions(constant)) {
     const auto& [name, places] = atoms_.node(node);
-    // The name with the constant blanked and the others as well: what kind of atom it is.
+    // The name with this constant blanked, and the others too: the kind of atom.
     std::uint64_t kind = base::kFnvStart;
     std::size_t copied = 0;
     for (const auto& place : places) {
@@ -181,7 +181,7 @@ bool PermutationCheck::set_image(ModelNode node, ModelNode to) {
   return true;
 }
 
-/// Most constants that are alike differ by facts, such as where each thing is at first.
+/// Quick test: most constants that are alike differ by facts, such as where each thing is at first.
 bool PermutationCheck::map_facts(const ConstantMap& map) {
   for (std::uint32_t constant = 0; constant < map.size(); ++constant) {
     if (map[constant] == constant) continue;
@@ -210,7 +210,7 @@ bool PermutationCheck::map_names(const ConstantMap& map) {
   return true;
 }
 
-/// Are what moves and where it moves the same nodes, each once?
+/// Are the moved nodes and their images the same nodes, each once?
 bool PermutationCheck::is_bijective() {
   std::vector<ModelNode> from = moved_, to;
   for (const auto node : moved_) to.push_back(images_[node]);
@@ -241,7 +241,8 @@ bool PermutationCheck::map_auxiliaries() {
   return is_bijective();
 }
 
-/// Is the mapped clause one of the model's? Equal hashes are looked at literal by literal.
+/// Is the mapped clause one of the model's? Clauses with equal hashes are compared literal by
+/// literal.
 bool PermutationCheck::has_image(const Entry& entry) {
   const auto sorted = [](std::vector<std::int32_t>& all) { std::sort(all.begin(), all.end()); };
   std::vector<std::int32_t> wanted, other;

@@ -26,7 +26,8 @@ class PermutationCheck {
     std::int32_t section = 0;  // 0: holds once; else the section's number + 1
   };
 
-  /// Equal for a constant and its image; what differs is told apart without a check.
+  /// A hash that is equal for a constant and its image; constants with different hashes need no
+  /// check.
   std::uint64_t signature(std::uint32_t constant) const;
   /// `map` is a permutation. Linear in the clauses that mention a constant that it moves; where
   /// facts differ, in those about such constants.

@@ -78,7 +78,7 @@ bool SymmetrySearch::is_within_set(const std::vector<std::uint32_t>& cell) const
                      [&](auto one) { return set_of_[one] == set_of_[cell.front()]; });
 }
 
-/// Until exchanges within sets are all that is left.
+/// Chooses bases until only exchanges within sets are left.
 void SymmetrySearch::choose_bases() {
   while (may_go_on()) {
     auto& refined = refined_.emplace_back();
@@ -140,7 +140,7 @@ void SymmetrySearch::find_generators() {
   }
 }
 
-/// The orbit of the level's base, and what takes the base to each constant of it.
+/// The orbit of the level's base, and a permutation that takes the base to each constant of it.
 void SymmetrySearch::close_level(std::size_t level) {
   auto& out = levels_[level];
   out.base = bases_[level];

@@ -8,8 +8,8 @@
 namespace parallax::runtime {
 
 /// The symmetries of a model that exchange several constants at once, beyond those that exchange
-/// two: for every constant of a base that exchanges leave open, and every constant of its colour,
-/// one that takes the first to the second and leaves the bases before where they are
+/// two. For every constant of a base that exchanges leave open, and every constant of its colour,
+/// it looks for one that takes the first to the second and fixes the bases before
 /// (individualization and refinement, as in McKay 1981; from the last base to the first, so that
 /// products of known symmetries are not sought). Each is one that the exact check accepts.
 class SymmetrySearch {
@@ -20,9 +20,10 @@ class SymmetrySearch {
   SymmetrySearch(PermutationCheck& check, ConstantColours& colours,
                  const std::vector<std::uint32_t>& set_of, std::int64_t most);
 
-  /// With the exchanges within the sets they generate all symmetries, if the search is complete.
+  /// Together with the exchanges within the sets they generate all symmetries, if the search is
+  /// complete.
   const std::vector<ConstantMap>& generators() const { return generators_; }
-  /// False: it would have taken too long.
+  /// False: the search was given up, as it would have taken too long.
   bool is_complete() const { return complete_; }
   /// All symmetries of the model; those within sets, if the search is not complete.
   ConstantGroup group(const std::vector<std::string>& constants) const;

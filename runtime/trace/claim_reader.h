@@ -40,15 +40,15 @@ class JsonValue {
   std::uint32_t index_;
 };
 
-/// A JSON text whose every value knows its place. For texts of unknown origin: at most kMaxDepth
-/// levels and kMaxValues values of 28 bytes, no recursion; a name must not stand twice in an
-/// object.
+/// A JSON text whose every value knows its place. Suitable for texts of unknown origin: at most
+/// kMaxDepth levels and kMaxValues values of 28 bytes, no recursion; an object must not have a name
+/// twice.
 class JsonDocument {
  public:
   static constexpr std::size_t kMaxDepth = 100;
   static constexpr std::size_t kMaxValues = 4'000'000;
 
-  /// Parses one value and nothing else. E6101 at the first place that is wrong. `files` outlives
+  /// Parses one value and nothing else. Reports E6101 at the first wrong place. `files` outlives
   /// the document.
   static base::Result<JsonDocument> parse(base::SourceRange text, const base::SourceFiles& files,
                                           base::DiagnosticSink& sink);

@@ -14,7 +14,7 @@ struct DecreasonerOptions {
   bool time_diff = true;        // changes instead of full states
   bool model_diff = false;      // from model 2 on, the difference from the one before
   bool show_predicates = true;  // the block `P`
-  /// `completion Happens`: the events of the last timepoint are said to be false.
+  /// `completion Happens`: the events of the last timepoint are printed as false.
   bool events_completed = false;
 };
 

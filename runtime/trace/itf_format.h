@@ -26,7 +26,7 @@ std::string join_atom(const AtomText& parts);
 struct ItfOptions {
   std::string tool;    // "parallax 0.3.0"
   std::string source;  // the model as the user named it
-  /// Where event symbols are declared, for states whose event is no step of a plan.
+  /// Declarations of event symbols, for states whose event is no step of a plan.
   std::map<std::string, compiler::TextPlace, std::less<>> declared;
 };
 
@@ -48,8 +48,7 @@ class ItfFormat final : public ListFormat {
   ItfFormat(const CompiledModel& model, ItfOptions options);
   std::string trace(const Trace& trace) override;
   std::string end(const ListEnd& end) override;
-  /// One trace as a file of its own: a state on each line, `end` said in its `#meta` if it is
-  /// known.
+  /// One trace as a file of its own: a state on each line. Its `#meta` has `end`, if that is known.
   std::string document(const Trace& trace, const std::optional<ListEnd>& end) const;
 
  private:

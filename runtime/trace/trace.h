@@ -21,8 +21,8 @@ namespace parallax::runtime {
 using compiler::CompiledModel;
 using compiler::Timepoint;
 
-/// The symbols that the ids of a trace stand for. Shared, because a trace outlives the source that
-/// found it and often the model, and all traces of a source have the same.
+/// The symbols that the ids of a trace stand for. Shared, because a trace outlives its source and
+/// often the model, and all traces of a source have the same symbols.
 using Symbols = std::shared_ptr<const compiler::SymbolTable>;
 Symbols symbols_of(const CompiledModel& model);
 
@@ -31,7 +31,7 @@ using Names = std::vector<std::string_view>;
 Names sorted_names(const compiler::SymbolTable& symbols, std::span<const compiler::FluentId> ids);
 Names sorted_names(const compiler::SymbolTable& symbols, std::span<const compiler::EventId> ids);
 
-/// Is the id among these, which are ascending?
+/// Is the id among `ids`, which are ascending?
 template <typename Id>
 bool contains(const std::vector<Id>& ids, Id id) {
   return std::binary_search(ids.begin(), ids.end(), id);
@@ -51,7 +51,7 @@ struct TracePoint {
   std::map<std::string, std::string> registers;
 };
 
-/// A point that comes from elsewhere, by names: those that the table lacks are added to it.
+/// A point from printed names. Names that the table lacks are added to it.
 TracePoint point_of_names(std::span<const std::string> holds, std::span<const std::string> happens,
                           compiler::SymbolTable& symbols);
 
@@ -61,7 +61,7 @@ struct Trace {
   Symbols symbols;          // of the ids in `points`; null only where there are none
   std::vector<TracePoint> points;
   std::vector<std::string> predicates;  // true atoms of user predicates, sorted
-  /// How many traces exchanging constants makes of this one, in decimal, where it stands for them.
+  /// Number of traces that symmetries make of this one, in decimal, if it stands for them.
   std::string orbit;
   /// Do other initial states lead to the same events? This one is the first in canonical order.
   base::Known other_initial_states = base::Known::kNo;
@@ -115,9 +115,9 @@ struct Vocabulary {
 
 Vocabulary vocabulary_of(const compiler::CompiledModel& model);
 
-/// 16 hexadecimal digits over the texts that a model was compiled from, in the order of loading,
-/// and the options that its meaning depends on; file names and the horizon do not count. FNV-1a: it
-/// finds accidents, it is no protection against forgery.
+/// Hash of the texts that a model was compiled from, in the order of loading, and of the options
+/// that its meaning depends on, as 16 hexadecimal digits. File names and the horizon do not count.
+/// FNV-1a: it finds accidents, and does not protect against forgery.
 std::string model_hash(const compiler::CompiledModel& model);
 
 }  // namespace parallax::runtime

@@ -35,7 +35,7 @@ struct ClaimedPoint {
   base::SourceRange source;
 };
 
-/// A trace as a file tells it. It need not mention every atom.
+/// A trace as a file describes it. It need not mention every atom.
 struct ClaimedTrace {
   std::int64_t number = 0;
   std::vector<ClaimedPoint> points;  // not empty

@@ -25,7 +25,7 @@ class TraceFormat {
   virtual std::string tail(const std::vector<std::string>& predicates) const = 0;
 };
 
-/// Changes only, for people.
+/// Text for people, with the changes only.
 const TraceFormat& text_format();
 /// One JSON object a line.
 const TraceFormat& jsonl_format();

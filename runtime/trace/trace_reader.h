@@ -19,7 +19,8 @@ struct TracePlace {
 /// Description of a trace file before its traces are read.
 struct TraceFileHead {
   std::vector<TracePlace> traces;  // in order
-  /// The model that the traces were made from (`model_hash`), and where the file says so.
+  /// The model that the traces were made from (`model_hash`), and the place in the file that says
+  /// so.
   std::optional<std::string> model;
   base::SourceRange model_source;
   bool closed = false;    // there is a line that says how the list ended, or none is needed

@@ -1,9 +1,9 @@
-// Conjunctions of effects and other parts, some of which name what does not exist.
+// Conjunctions of effects and other parts, some of which name atoms that do not exist.
 //
 // One formula of a random model has a conjunction behind its arrow. The test writes out each of its
 // instances that exists as a whole, one ground formula for each conjunct, and leaves out the
-// others: that is what docs/language.md says of instances. Both texts must have the same traces.
-// The oracles of the fuzzer read the formula as it stands.
+// others, as docs/language.md defines instances. Both texts must have the same traces. The oracles
+// of the fuzzer read the formula as it stands.
 
 #include <doctest/doctest.h>
 
@@ -31,7 +31,7 @@ struct Values {
 };
 
 /// A part of the formula with its reading: its text over variables, its text in an instance, and
-/// whether what it names exists there.
+/// whether the atoms that it names exist there.
 struct Part {
   enum class Kind { kInitiates, kTerminates, kHolds, kHappens } kind = Kind::kHolds;
   int what = 0;   // 0: a level fluent, 1: a tool fluent, 2: the fluent without arguments

@@ -63,8 +63,8 @@ class Comparer {
     return (brute_ && !brute_->traces.empty()) || (clingo_ && !clingo_->found.traces.empty());
   }
 
-  /// "This formula is false whatever happens" and "says nothing" can be looked at from outside;
-  /// what is wrong with a number or a table is taken as it is.
+  /// "This formula is false whatever happens" and "says nothing" can be checked from outside;
+  /// errors in a number or a table are taken as they are.
   Comparison confirm_refusal() const {
     const auto codes = base_.codes();
     if (codes == "E3003" && has_trace()) {
@@ -105,7 +105,7 @@ class Comparer {
     return all;
   }
 
-  /// With the user predicates that both sides know.
+  /// The traces with the user predicates that both sides know.
   static Keys in_full(const TraceList& list, const TraceList& other) {
     Keys all;
     for (const auto& trace : list.traces) {
@@ -291,7 +291,7 @@ class Comparer {
       const FuzzCompilation compilation(text_, variant.options);
       // Expanded over all timepoints, a contradiction between them shows while grounding already.
       if (compilation.codes() == "E3003" && expected && expected->empty()) continue;
-      // With bounds, a cycle may go through what cannot be; without, nobody can tell.
+      // With bounds, a cycle may go through impossible atoms; without, nobody can tell.
       if (compilation.codes() == "E3016" && !variant.options.relevance &&
           evaluator_->expanded().has_circular_effect()) {
         continue;

@@ -17,14 +17,14 @@ struct DifferentialOptions {
   std::size_t max_atoms = 18;     // of brute force
 };
 
-/// What came of comparing the oracles on one model.
+/// Result of comparing the oracles on one model.
 struct Comparison {
   enum class Kind : std::uint8_t {
     kAgree,    // all oracles have the same traces
     kPart,     // too many traces: those found were checked, not all compared
     kRefused,  // parallax rejects the model with `code`, and the oracles confirm the reason
     kLeftOut,  // the rules of the encoder of 2005 give no answer, `code` says why
-    kDiffer    // `detail` tells what differs
+    kDiffer    // `detail` describes the difference
   };
   Kind kind = Kind::kAgree;
   std::string code;    // kRefused: the errors; kDiffer: which two sides, for shrinking

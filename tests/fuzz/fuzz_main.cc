@@ -102,7 +102,7 @@ bool is_large(const FuzzOptions& options, std::uint64_t seed) {
   return options.clingo && options.large_every != 0 && seed % options.large_every == 0;
 }
 
-/// Compares the model; where formulas are refused, also what is left without them. Reports a
+/// Compares the model and, where formulas are refused, also the model without them. Reports a
 /// difference.
 void fuzz_one(const RandomModel& model, const DifferentialOptions& comparing, bool shrinks,
               FuzzFigures& figures) {

@@ -56,7 +56,7 @@ class OldEncoder : OldTerms {
     return OldTree::atom_of(timed_atom('e', t, event.text), !event.fits || t < 0 || t >= horizon_);
   }
 
-  /// What stands in the place of an effect atom.
+  /// The formula that replaces an effect atom.
   OldTree transformed(EffectKind kind, const OldValue& event, const OldValue& fluent,
                       std::int64_t t) const {
     const auto released = state('r', fluent.text, fluent.fits, t + 1);
@@ -93,7 +93,7 @@ class OldEncoder : OldTerms {
 
   // --- formulas ---
 
-  /// What is left of a quantifier's instances.
+  /// Combines a quantifier's instances, without those that have an atom that does not exist.
   static OldTree quantified(bool all, std::vector<OldTree> instances) {
     std::erase_if(instances, [](const OldTree& instance) { return instance.has_beyond(); });
     if (instances.empty()) return OldTree::constant(all);
@@ -101,8 +101,8 @@ class OldEncoder : OldTerms {
     return OldTree::of(all ? Kind::kAnd : Kind::kOr, std::move(instances));
   }
 
-  /// A part that is constant counts as a constant at once. That program sees it so in conjunctions
-  /// and disjunctions alone; what is below a negation or a quantifier it may discard
+  /// A part that is constant counts as a constant at once. The program of 2005 does so in
+  /// conjunctions and disjunctions alone; parts below a negation or a quantifier it may discard
   /// (docs/compatibility.md).
   OldTree tree(compiler::TypedFormulaId id) {
     auto made = written_out(id);
@@ -151,7 +151,7 @@ class OldEncoder : OldTerms {
 
   // --- what is asserted ---
 
-  /// What grounds to a constant is left out.
+  /// Asserts the simplified formula; one that grounds to a constant is left out.
   std::optional<OldTree> assert_tree(const OldTree& made) {
     auto simple = simplified(made, false);
     if (simple.is(Kind::kTrue) || simple.is(Kind::kFalse)) return std::nullopt;
@@ -416,7 +416,7 @@ class OldEncoder : OldTerms {
     return literal.starts_with(predicate_atom(model_.symbols[predicate].name + "("));
   }
 
-  /// By completion: every clause of its formulas.
+  /// By completion: the clauses of all formulas that it covers.
   std::vector<std::vector<OldClause>> completed_clauses() {
     std::vector<std::vector<OldClause>> all;
     for (const auto& completion : model_.completions) {

@@ -8,7 +8,7 @@
 
 namespace parallax::test {
 
-/// What the encoder of 2005 makes of a checked model, and its models.
+/// Models of a checked model according to the encoder of 2005.
 struct OldAnswer {
   TraceList found;
   /// Empty, or why the rules give no answer here.

@@ -35,7 +35,7 @@ class Search {
         if (numbers_.emplace(atom, 0).second) atoms.push_back(std::move(atom));
       }
     }
-    // By timepoint, so that what follows from a state is known soon.
+    // By timepoint, so that the consequences of a state are known soon.
     const auto time = [](const std::string& atom) {
       return atom[0] == 'p' ? std::int64_t{1'000'000} : std::int64_t{std::stol(atom.substr(2))};
     };

@@ -26,7 +26,7 @@ struct TraceList {
   std::optional<std::set<std::string>> predicates = std::nullopt;
 };
 
-/// A model text as parallax reads it. What could not be made is absent, `codes` says why.
+/// A model text as parallax reads it. Parts that could not be made are absent; `codes` says why.
 struct FuzzCompilation {
   base::SourceFiles files;
   base::DiagnosticSink sink;
@@ -53,9 +53,9 @@ std::vector<GroundVariant> ground_variants();
 
 /// All valuations of the compiled model's atoms, at most `limit`.
 TraceList solver_valuations(const compiler::CompiledModel& model, std::size_t limit);
-/// What ModelEnumerator finds: each observable part once.
+/// Traces that ModelEnumerator finds: each observable part once.
 TraceList enumerated_traces(const compiler::CompiledModel& model, std::size_t limit);
-/// How many the counter by components finds, in decimal digits.
+/// Number of traces found by the counter by components, in decimal digits.
 std::string counted_traces(const compiler::CompiledModel& model);
 /// Every assignment that the evaluator accepts; none if more than 2^`max_atoms` would be tried.
 std::optional<TraceList> brute_force_traces(const compiler::ReferenceEvaluator& evaluator,

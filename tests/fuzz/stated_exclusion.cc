@@ -53,7 +53,7 @@ class Definition {
   bool every_choice(const std::vector<compiler::SymbolId>& names, bool some, std::size_t t) {
     std::vector<Slot> open;
     for (const auto name : names) {
-      // What does not happen at all at the last timepoint is excluded by nothing.
+      // Events do not happen at the last timepoint, so no exclusion applies to them there.
       const bool event = model_.symbols[name].kind == SymbolKind::kEvent;
       if (event && t + 1 == trace_.holds.size()) return true;
       for (const auto& slot : slots(name, some)) {

@@ -1,4 +1,4 @@
-// A search that is stopped at any solver call: every answer is right or says that it is none.
+// A search that is stopped at any solver call: every answer is right or says that it is undecided.
 
 #include <doctest/doctest.h>
 
@@ -47,7 +47,7 @@ const std::string kPlan = R"(
   (perform (an action (type switching) (object (an object (name b2))))))
 )";
 
-/// What an enumeration with a plan has told, in order.
+/// Results of an enumeration with a plan, in order.
 struct Told {
   std::vector<std::string> keys;
   std::vector<Known> initial_states, outcomes, admitted;

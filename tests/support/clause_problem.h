@@ -12,7 +12,7 @@ namespace parallax::test {
 
 using Valuation = std::vector<bool>;
 
-/// Clauses, what tells valuations apart, and assumptions.
+/// Clauses, the literals that distinguish valuations, and assumptions.
 struct ClauseProblem {
   std::int32_t variables = 0;
   std::vector<std::vector<compiler::Literal>> clauses;

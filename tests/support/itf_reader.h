@@ -11,7 +11,7 @@
 namespace parallax::test {
 
 /// A reader of the Informal Trace Format, after its published description (Apalache ADR-015) and
-/// nothing else: what it accepts any reader of the format accepts.
+/// nothing else: any reader of the format accepts the files that it accepts.
 class ItfFile {
  public:
   using Json = nlohmann::json;

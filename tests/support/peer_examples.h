@@ -9,9 +9,9 @@
 
 namespace parallax::test {
 
-/// The folder that holds `examples/` of the Discrete Event Calculus Reasoner 1.0: what
-/// PARALLAX_PEER_EXAMPLES names, or a folder beside the checkout. None, with a visible line, where
-/// there is none: the examples are not ours to ship.
+/// The folder that holds `examples/` of the Discrete Event Calculus Reasoner 1.0: the value of
+/// PARALLAX_PEER_EXAMPLES, or a folder beside the checkout. None, with a visible line, where there
+/// is none: the examples are not ours to ship.
 inline std::optional<std::filesystem::path> peer_examples() {
   namespace fs = std::filesystem;
   const char* named = std::getenv("PARALLAX_PEER_EXAMPLES");

@@ -58,7 +58,7 @@ class PlannedModel {
     std::filesystem::remove_all(name);
   }
 
-  /// Of model files that stay; `locator` outlives the call.
+  /// Compiles model files that already exist and are kept; `locator` outlives the call.
   PlannedModel(const std::vector<std::filesystem::path>& models, const std::string& plan,
                const std::string& binding, const std::string& constraint,
                std::optional<std::int64_t> horizon, const compiler::PoseLocator& locator) {
@@ -68,7 +68,7 @@ class PlannedModel {
   const compiler::CompiledModel& compiled() const { return compilation_->model; }
   const compiler::TypedModel& typed() const { return *compilation_->typed; }
 
-  /// The ids of what was reported, in order, blank-separated.
+  /// The codes that were reported, in order, blank-separated.
   std::string codes() const {
     std::string out;
     for (const auto& diagnostic : sink_.sorted()) {

@@ -27,7 +27,7 @@ class ModelMaker {
     return std::move(statements_);
   }
 
-  /// To be called after the rest, so that models without them are the same.
+  /// Must be called after the rest, so that models without them are the same.
   std::vector<RandomStatement> make_effect_constraints() {
     statements_.clear();
     const auto count = 1 + random_.below(3);
@@ -35,7 +35,7 @@ class ModelMaker {
     return std::move(statements_);
   }
 
-  /// To be called after the rest. Two or three names with none to two arguments of one sort, not
+  /// Must be called after the rest. Two or three names with none to two arguments of one sort, not
   /// all with the same number.
   std::vector<RandomStatement> make_exclusion() {
     statements_.clear();
@@ -136,7 +136,7 @@ class ModelMaker {
     }
   }
 
-  /// Some of what holds and happens is said outright.
+  /// Some fluents and events are stated outright.
   void start() {
     for (const auto& fluent : schema_.elements.at("fluent")) {
       const auto roll = random_.below(100);
@@ -283,7 +283,7 @@ class ModelMaker {
     state(closed(variables, under_condition(std::move(head), 50)));
   }
 
-  /// Some event always changes this fluent: what a trajectory needs to begin and to end.
+  /// Some event always changes this fluent: a trajectory needs one to begin and one to end it.
   void change(const std::string& effect, const std::string& fluent) {
     const auto& events = schema_.elements.at("event");
     if (events.empty()) return;

@@ -43,7 +43,7 @@ struct RandomStatement {
 struct RandomModel {
   std::uint64_t seed = 0;
   std::vector<RandomStatement> statements;
-  /// Atoms of HoldsAt, Happens, ReleasedAt (of what can be released) and user predicates.
+  /// Atoms of HoldsAt, Happens, ReleasedAt (for fluents that can be released) and user predicates.
   std::size_t atoms = 0;
   std::string print() const;
 };

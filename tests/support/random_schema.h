@@ -15,7 +15,7 @@ struct RandomSymbol {
   std::string result;
 };
 
-/// What a random model declares, and which elements every sort then has.
+/// Declarations of a random model, and the elements of every sort.
 struct RandomSchema {
   struct Interval {
     int lower = 0;

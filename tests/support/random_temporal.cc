@@ -128,7 +128,7 @@ std::string random_temporal_model(FuzzRandom& random) {
   if (random.chance(40)) {
     out += "[time] !Happens(Push(A),time) | !Happens(Push(B),time).\n";
   }
-  // What is demanded and what is ruled out can leave a state without a next one.
+  // Axioms that demand something and axioms that rule it out can leave a state without a successor.
   const std::vector<std::string> plain(states.begin(), states.end() - 1);
   if (random.chance(40)) {
     const auto* pushed = random.chance(50) ? "A" : "B";

@@ -18,7 +18,7 @@ struct TemporalFormula {
   std::vector<TemporalFormula> parts;
 
   std::string print() const;
-  /// At t of the trace; none where it names a timepoint before 0.
+  /// Value at t of the trace; none where it names a timepoint before 0.
   std::optional<bool> value(const compiler::Valuation& trace, int t,
                             const std::string& thing = {}) const;
   bool has(const std::vector<std::string>& ops) const;

@@ -13,7 +13,7 @@ namespace parallax::test {
 /// One model of a recorded answer, as it stands there and as it reads when written out.
 struct RecordedModel {
   std::vector<std::string> lines;  // below `model K:`
-  std::string printed;             // `model K:` or `model K diff:` and what follows, line ends too
+  std::string printed;  // `model K:` or `model K diff:` and the lines after it, line ends too
 };
 
 /// The model part of an answer that the Discrete Event Calculus Reasoner 1.0 recorded.

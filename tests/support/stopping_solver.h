@@ -8,7 +8,8 @@
 namespace parallax::test {
 
 /// Says when a search is to be stopped: at the solver call with this number, counted over all
-/// solvers that share it, and from then on. The flag is raised with it, for what else looks at it.
+/// solvers that share it, and from then on. The flag is raised with it, for other code that looks
+/// at it.
 struct StopAt {
   std::int64_t call = 0;
   std::int64_t calls = 0;
@@ -41,7 +42,8 @@ class StoppingSolver final : public runtime::SatSolver {
 };
 
 /// Calls `question` with a search that is stopped at its first solver call, at its second, and so
-/// on, until one is not stopped any more; `question` holds what it is told against the full answer.
+/// on, until one is not stopped any more; `question` compares the answer that it gets with the full
+/// one.
 template <typename Question>
 std::int64_t sweep_stops(const Question& question) {
   for (std::int64_t n = 0;; ++n) {

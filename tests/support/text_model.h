@@ -34,7 +34,7 @@ struct TextModel {
     compiled = compiler::encode(*ground, nullptr, folded);
   }
 
-  /// The ids of what was reported, in order, blank-separated.
+  /// The codes that were reported, in order, blank-separated.
   std::string codes() const {
     std::string out;
     for (const auto& diagnostic : sink.sorted()) {

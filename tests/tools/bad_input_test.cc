@@ -207,7 +207,7 @@ TEST_CASE("streams that are full or closed cost the text, not the program") {
   CHECK(full.err.find("standard output") != std::string::npos);
   CHECK(with_streams(cli, "check scenario.yaml --json >/dev/full").code == 2);
   CHECK(with_streams(cli, "run nowhere.yaml 2>/dev/full").code == 2);
-  // What was not looked for, as nobody would see it, is no message of its own.
+  // An explanation that was not searched for, as nobody would see it, has no message of its own.
   cli.write("no.e", "fluent F()\n\nHoldsAt(F(),0).\n!HoldsAt(F(),0).\n");
   const auto explained = with_streams(cli, "explain no.e --horizon 2 >/dev/full");
   CHECK(explained.code == 2);

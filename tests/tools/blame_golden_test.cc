@@ -1,5 +1,6 @@
-// What `parallax explain RUN_DIR` says of 24 discrepancies, word by word: tests/tools/blame/*.txt.
-// PARALLAX_UPDATE_GOLDENS=1 writes them anew; read the difference as carefully as code.
+// Explanations by `parallax explain RUN_DIR` of 24 discrepancies, word by word:
+// tests/tools/blame/*.txt. PARALLAX_UPDATE_GOLDENS=1 writes them anew; read the difference as
+// carefully as code.
 
 #include <doctest/doctest.h>
 
@@ -55,7 +56,7 @@ class Scenarios : public CliFixture {
   }
 };
 
-/// Runs the scenario and compares what is said of its first discrepancy.
+/// Runs the scenario and compares the explanation of its first discrepancy.
 void explains(const Scenarios& cli, const std::string& name, const std::string& scenario,
               std::vector<std::string> run_options = {},
               const std::vector<std::string>& explain_options = {"--runs", "0"}) {

@@ -1,4 +1,4 @@
-// What is claimed covers what was examined: attempts, borders, repetitions, seeds, interruptions.
+// Claims cover what was examined: attempts, borders, repetitions, seeds, interruptions.
 
 #include <doctest/doctest.h>
 
@@ -58,7 +58,7 @@ TEST_CASE("a statistical test is not repeated until it passes") {
   std::filesystem::remove(cli.folder() / "tried");
   cli.two_coins(1.0, 0.0, "{verdict: no-discrepancy}");
   CHECK(cli.parallax(suite).code == 1);
-  // That there is a discrepancy is no statistics: what is found once is there.
+  // That there is a discrepancy is no statistics: one that was found once is there.
   std::filesystem::remove(cli.folder() / "tried");
   cli.two_coins(0.0, 1.0, "{verdict: discrepancy}");
   const auto found = cli.parallax(suite);

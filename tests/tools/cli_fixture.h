@@ -19,7 +19,7 @@ class CliFixture {
 
   /// `parallax ARGS...` in the folder.
   ProcessResult parallax(std::vector<std::string> arguments, ProcessOptions options = {}) const;
-  /// Where the program lies.
+  /// Path of the program.
   static std::string program();
   void write(const std::string& name, const std::string& text) const;
   std::string read(const std::string& name) const;

@@ -11,8 +11,8 @@
 
 namespace parallax::test {
 
-/// What `parallax ARGUMENTS... --json` prints in the fixture's folder. It must be one document, and
-/// the exit code the expected one.
+/// The document that `parallax ARGUMENTS... --json` prints in the fixture's folder. The output must
+/// be one JSON document, and the exit code the expected one.
 inline nlohmann::json json_of(const CliFixture& cli, std::vector<std::string> arguments,
                               int expected_code = 0) {
   arguments.emplace_back("--json");

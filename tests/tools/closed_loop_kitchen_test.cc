@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The plan's file up to `deliver`, and what comes instead.
+/// The plan's file up to `deliver`, followed by the given text.
 std::string up_to_deliver(const CliFixture& cli, const std::string& plan, const std::string& rest) {
   const auto text = cli.read(plan);
   const auto at = text.find("(def-cram-function deliver");

@@ -124,7 +124,7 @@ TEST_CASE("with --keep-going every cause is found once, and counted") {
     CHECK(cause.at("rate").get<double>() == doctest::Approx(static_cast<double>(count) / 90.0));
     CHECK(cause.at("lower") < cause.at("rate"));
     CHECK(cause.at("upper") > cause.at("rate"));
-    // Its first simulation is the one that is told in full.
+    // The cause's first simulation is the one that is reported in full.
     const auto& found = report.at("discrepancies");
     CHECK(std::any_of(found.begin(), found.end(), [&](const Json& one) {
       return one.at("cause").at("text") == cause.at("cause") &&
@@ -167,7 +167,7 @@ TEST_CASE("an event that nobody performed and nothing demands excuses no differe
       json_of(cli, {"run", "two/bump.yaml", "--execution", "closed-loop", "--out", "out"}, 1);
   CHECK(report.at("simulations") == 1);
   CHECK(report.at("discrepancies").at(0).at("cause").at("text") == "OpenDrawer(top): not Parked()");
-  // What an axiom demands goes with what is performed.
+  // An event that an axiom demands happens together with the performed one.
   const std::string slam =
       "event Slam()\n[time] Happens(Park(),time) -> Happens(Slam(),time).\n"
       "[drawer,time] Terminates(Slam(),Open(drawer),time).\n";
@@ -186,7 +186,7 @@ TEST_CASE("check says what a run in closed loop would, and asks for no constrain
   cli.write("two/own.yaml", scenario);
   CHECK(cli.parallax({"check", "two/own.yaml", "--no-lint"}).code == 0);
   CHECK(cli.parallax({"run", "two/own.yaml", "--out", "out"}).code == 0);
-  // What both say of a scenario that cannot be run.
+  // Errors that both commands report for a scenario that cannot be run.
   const std::pair<std::string, std::string> wrong[] = {
       {"criterion: paper\n", "error[E7125]"},
       {"mapping: {Open(d): ignored}\n", "error[E7124]"},
@@ -411,7 +411,7 @@ TEST_CASE("executions begin in every initial state, and guards ask what is obser
     CHECK(path.at("simulations") > 20);
   }
   CHECK(lengths == std::set<std::size_t>{1, 2});
-  // What no observation answers is refused before anything is simulated.
+  // A question that no observation answers is refused before anything is simulated.
   cli.replace("two/own.yaml", "{flag: \"Parked()\", drawn: true}", "ignored");
   const auto unseen = cli.parallax({"run", scenario});
   CHECK(unseen.code == 3);

@@ -1,6 +1,6 @@
-// Workers that die, hang and lag in every fifth simulation: with a simulator that promises the same
-// run for the same seed the report is that of one machine; with any other one what is lost is told
-// as lost, and what is claimed is true.
+// Workers that die, hang and lag in every fifth simulation. With a simulator that promises the same
+// run for the same seed, the report is that of one machine; with any other simulator, lost runs are
+// reported as lost, and the claims are true.
 
 #include <map>
 
@@ -92,7 +92,8 @@ TEST_CASE(
   const auto& any = trace.at("any");
   CHECK(any.at("lower").get<double>() <= kP);
   CHECK(any.at("upper").get<double>() >= kP);
-  // What was seen is no sample that quick runs win: so far from p only once in 100,000 times.
+  // The sample is not biased towards quick runs: a rate so far from p occurs only once in 100,000
+  // times.
   const double rate = any.at("rate");
   CHECK(rate > 0.17);
   CHECK(rate < 0.44);

@@ -1,5 +1,5 @@
 // Workers that are started through a command: reports as on one machine, places that are of no use,
-// and what is said of them.
+// and the messages about them.
 
 #include <signal.h>
 

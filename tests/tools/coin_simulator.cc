@@ -1,8 +1,8 @@
 // A simulator that shows a discrepancy with a known probability: coin_simulator P KIND LOG. With
 // the kind `seeded` the seed decides, and it says so; with `unseeded` the machine does, and runs
 // that go wrong take longer. An action takes COIN_SECONDS besides. Each reset is written to LOG
-// with the number of its process. What it says of its version is in COIN_VERSION. After COIN_WEAR
-// resets of a process all of its runs go wrong. Shares no code with the harness.
+// with the number of its process. Its stated version is COIN_VERSION. After COIN_WEAR resets of a
+// process all of its runs go wrong. Shares no code with the harness.
 
 #include <fcntl.h>
 #include <unistd.h>

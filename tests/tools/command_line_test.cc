@@ -1,4 +1,5 @@
-// Option tables: what a line puts into their targets, what help shows, which lines are refused.
+// Option tables: the values that a line sets, the help that is shown, and the lines that are
+// refused.
 
 #include "tools/cli/command_line.h"
 

@@ -1,6 +1,6 @@
-// docs/compatibility.md: every known quirk of the reasoner of 2005 with what this program makes of
-// it. Each row's model is run in both meanings; the page shows what came of it. On a difference the
-// test prints the table as it should be.
+// docs/compatibility.md: every known quirk of the reasoner of 2005, and the treatment by this
+// program. Each row's model is run in both meanings; the page shows the results. On a difference
+// the test prints the table as it should be.
 
 #include <doctest/doctest.h>
 
@@ -18,8 +18,9 @@ namespace {
 constexpr const char* kBegin = "<!-- quirks: begin, made by compatibility_test -->\n";
 constexpr const char* kEnd = "<!-- quirks: end -->\n";
 
-/// What the program of 2005 does, a model that shows it, and how many models it finds; its answer
-/// is none where it stops or loses count. `follows`: --compat decreasoner has the same models.
+/// One behaviour of the program of 2005, a model that shows it, and the number of models it finds.
+/// `answer` is empty where that program stops or loses count. `follows`: --compat decreasoner has
+/// the same models.
 struct Quirk {
   std::string what;
   std::string answer;  // of 2005
@@ -168,7 +169,7 @@ TEST_CASE("docs/compatibility.md shows every quirk as it is") {
     const auto ours = outcome(cli, {}, counted);
     const auto old = outcome(cli, {"--compat", "decreasoner"}, counted);
     const auto number = old.substr(0, old.find(','));
-    // What is followed gives the models of 2005, what is not gives others or none.
+    // A quirk that is followed gives the models of 2005; one that is not gives others or none.
     CHECK_MESSAGE((counted && number == quirk.answer) == quirk.follows, old);
     table += "| " + quirk.what + " | " + (quirk.answer.empty() ? "not known" : quirk.answer) +
              " | " + ours + " | " + old + " | " +

@@ -1,5 +1,6 @@
-// `parallax coverage` of executed plans: items against the run's own account of its paths, what the
-// world never showed and what the model lacks against answers known beforehand.
+// `parallax coverage` of executed plans: items compared with the run's own account of its paths.
+// Behaviours that the world never showed, or that the model lacks, are compared with answers known
+// beforehand.
 
 #include <doctest/doctest.h>
 
@@ -31,7 +32,7 @@ std::map<std::string, int> hits_of(const Json& group) {
   return out;
 }
 
-/// How many of the runs of the report took a path that `fits`.
+/// Number of runs in the report that took a path that `fits`.
 template <typename Fits>
 int runs_with(const Json& report, const Fits& fits) {
   int out = 0;
@@ -70,7 +71,7 @@ TEST_CASE("coverage of executions: each item as often as the paths of the report
       runs_with(report, [&](const auto&, const auto& outcomes) { return failures(outcomes) > 0; });
   const int opens =
       runs_with(report, [&](const auto&, const auto& outcomes) { return failures(outcomes) < 2; });
-  // All are likely: a half of the starts, and of what is left open.
+  // All are likely: a half of the starts, and of the open outcomes.
   REQUIRE(std::min({parks, all - parks, closes, fails, all - opens}) > 0);
   CHECK(hits_of(coverage.at("performs")) == std::map<std::string, int>{{"2 Park", parks},
                                                                        {"6 OpenDrawer", all},
@@ -94,7 +95,7 @@ TEST_CASE("coverage of executions: each item as often as the paths of the report
   CHECK(events.at("9 OpenDrawer") == all);
   CHECK(events.at("11 Park") == parks);
   CHECK(events.at("12 Reach") == 0);
-  // What opens in the model, where it opened in the world.
+  // The axiom by which the drawer opens in the model is covered where it opened in the world.
   CHECK(hits_of(coverage.at("axioms")).at("3 initiates") == opens);
   CHECK(coverage.at("traces").empty());
   CHECK(coverage.at("never_shown").empty());
@@ -189,7 +190,7 @@ TEST_CASE("a handler counts where the condition that was raised is its own") {
   cli.replace("two/robot.bind", bound,
               "else manipulation-goal-not-reached\n  on not-possible navigation-pose-unreachable\n"
               "action reaching");
-  // The world forbids to park what is parked; so does the model, or else that is a difference.
+  // The world forbids parking when parked; so must the model, or else that is a difference.
   const std::string forbids =
       "load opens.e\n[time] Happens(Park(),time) -> !HoldsAt(Parked(),time).\n";
   cli.write("two/start.e", "[drawer] !HoldsAt(Open(drawer),0).\nHoldsAt(Parked(),0).\n");

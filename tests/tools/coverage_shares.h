@@ -5,7 +5,8 @@
 
 namespace parallax::test {
 
-/// What a run's report has to say of its coverage, counted from the document of `coverage --json`.
+/// Shares of coverage that a run's report must state, counted from the document of `coverage
+/// --json`.
 inline nlohmann::json shares_of(const nlohmann::json& coverage) {
   nlohmann::json out;
   for (const std::string group :

@@ -1,5 +1,5 @@
-// `parallax coverage`: what recorded runs went through, against counts known beforehand and those
-// of the run's own report.
+// `parallax coverage`: the items that recorded runs covered, compared with counts known beforehand
+// and with those of the run's own report.
 
 #include <doctest/doctest.h>
 
@@ -55,7 +55,7 @@ class CoveredRun : public TwoModels {
   }
 };
 
-/// By "file:line id": simulations and traces.
+/// Simulations and traces, by "file:line id".
 using Counts = std::map<std::string, std::pair<int, int>>;
 Counts counts_of(const Json& group) {
   Counts out;
@@ -67,7 +67,7 @@ Counts counts_of(const Json& group) {
   return out;
 }
 
-/// A tracefile, by an own reader: a record for each file, with what it counts itself.
+/// A tracefile, by the test's own reader: a record for each file, with the totals that it states.
 struct LcovFile {
   std::map<int, int> lines;
   std::map<std::string, int> functions;

@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 
 const fs::path kPlans = fs::path(PARALLAX_SOURCE_DIR) / "tests" / "plans" / "cram";
 
-/// The plans, and in how many ways each reaches what its scenario asks for: by where things are at
-/// the start, as there is one way only to each of these.
+/// The plans, and the number of ways in which each reaches its scenario's goal: by where things are
+/// at the start, as there is one way only to each of these.
 struct CramPlan {
   std::string name;
   int traces = 0;
@@ -25,7 +25,7 @@ const std::vector<CramPlan> kCramPlans = {
     {"fetch", 1},      // the milk is on the first cell
     {"deliver", 3},    // or on any of three
     {"search", 3},     // the spoon is in one of three drawers
-    {"access", 1},     // what is in the drawers makes no difference
+    {"access", 1},     // the contents of the drawers make no difference
     {"seal", 2},       // the spoon is in the middle drawer or not
     {"transport", 3},  // as with search
     {"pour", 1},       // milk and bowl are where they are looked for
@@ -57,7 +57,7 @@ TEST_CASE("plans in CRAM's style are checked, have their traces and are simulate
     const auto ran = cli.parallax(run);
     CAPTURE(ran.err);
     REQUIRE(nlohmann::json::accept(ran.out));
-    // So few simulations say nothing about the plan; that each trace had one is what counts.
+    // So few simulations say nothing about the plan; the test is that each trace had one.
     const auto result = nlohmann::json::parse(ran.out);
     CHECK(result["traces"].size() == static_cast<std::size_t>(traces));
     CHECK(result["simulations"].get<int>() == traces);

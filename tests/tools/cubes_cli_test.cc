@@ -11,8 +11,8 @@
 namespace parallax::test {
 namespace {
 
-/// Lamps in holes, at most one in each, and one hole too few where `odd`: that not all are in takes
-/// a solver many conflicts. Numbers are told apart.
+/// Lamps in holes, at most one in each, and one hole too few where `odd`: a solver needs many
+/// conflicts to find that not all are in. Numbers are distinguished, so there is no symmetry.
 std::string lamps(int count, bool odd) {
   std::string text = "range time 0 1\nrange lamp 1 " + std::to_string(count) +
                      "\nsort lamp: integer\nsort hole: integer\nrange hole 1 " +

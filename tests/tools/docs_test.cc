@@ -1,4 +1,4 @@
-// What the documentation says is what the program does.
+// Checks that the documentation describes what the program does.
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -70,7 +70,7 @@ TEST_CASE("every command of the README is one that the program knows") {
   }
 }
 
-/// With four digits of each number: the last ones depend on the machine.
+/// The text with four digits of each number: the last ones depend on the machine.
 std::string rounded(const std::string& text) {
   const std::regex number("-?[0-9]+\\.[0-9]+");
   std::string out;

@@ -1,4 +1,4 @@
-// `parallax doctor`: what works is tried, what does not is said with what to do.
+// `parallax doctor`: tries the parts that work, and says what to do about those that do not.
 
 #include <sys/stat.h>
 

@@ -26,7 +26,7 @@ std::vector<std::string> texts_of(const XmlElement& svg) {
   return out;
 }
 
-/// Of the groups of marks, in their order: class and title.
+/// Class and title of each group of marks, in their order.
 std::vector<std::string> marks_of(const XmlElement& svg) {
   std::vector<std::string> out;
   for (const auto* group : svg.all("g")) {

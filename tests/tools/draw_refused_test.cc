@@ -1,4 +1,4 @@
-// What `parallax draw` says where there is nothing to draw, or not all of it.
+// Messages of `parallax draw` where there is nothing to draw, or not all of it.
 
 #include <doctest/doctest.h>
 

@@ -44,7 +44,8 @@ double number(const XmlElement& element, const std::string& attribute) {
   return std::stod(element.at(attribute));
 }
 
-/// Of text that starts at x, as wide as the average of a sans-serif font makes it.
+/// Bounds of a text that starts at x or is centred there, as wide as the average of a sans-serif
+/// font makes it.
 Box2 bounds_of_text(const XmlElement& text) {
   const double font = number(text, "font-size"), x = number(text, "x"), y = number(text, "y");
   const double width = 0.5 * font * static_cast<double>(text.text.size());
@@ -114,7 +115,7 @@ bool has_text(const XmlElement& svg, const std::string& wanted) {
                      [&](const XmlElement* text) { return text->text == wanted; });
 }
 
-/// From the scale at the lower right: its length in pixels and in metres.
+/// The picture's scale, read from the bar at the lower right: its length in pixels and in metres.
 double pixels_per_m(const XmlElement& svg) {
   for (const auto* label : svg.all("text")) {
     if (!label->text.ends_with(" m")) continue;
@@ -204,7 +205,7 @@ TEST_CASE("each action of a recorded simulation has its picture, which shows wha
     CHECK(marks.contains("track") == (i > 0));
     CHECK(marks.contains("goal") == (i % 2 == 1));
     CHECK(marks.contains("map"));
-    // The box ends 5.5 mm beyond r1: that is told where it comes to light, and nowhere else.
+    // The box ends 5.5 mm beyond r1: this is shown where it comes to light, and nowhere else.
     CHECK(marks.contains("differs") == (i == 4));
     CHECK(marks.contains("measure") == (i == 4));
     CHECK(has_text(svg, "predicted: BoxIn(r1); observed: it does not hold") == (i == 4));

@@ -59,7 +59,7 @@ TEST_CASE("the answer sets of the logic program are the traces of --distinct all
       "range time 0 1\nsort thing\nthing A, B, C\npredicate P(thing)\npredicate Q(thing,thing)\n"
       "predicate Never(time,thing)\npredicate R()\nfluent On()\nevent Press()\n"
       "[time] Initiates(Press(),On(),time).\n!HoldsAt(On(),0).\n";
-  // Axioms with effects in their conditions are reasons for completion; definitions are none.
+  // Axioms with effects in their conditions are reasons for completion; definitions are not.
   const std::string reasons = one + "range time 0 1\nevent Ring()\ncompletion Happens\n";
   const std::vector<std::string> models = {
       reasons + "[time] !Terminates(Press(),On(),time) -> Happens(Press(),time).\n",

@@ -1,4 +1,4 @@
-// Models that are wrong in every run and right about its end: every step is compared.
+// Models that are wrong in every run, but right about its end: every step is compared.
 
 #include <doctest/doctest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Driving is as it is; what picking up and placing do is for the model to say.
+/// Driving is as it is; the effects of picking up and placing are for the model to say.
 constexpr const char* kDriving =
     "sort region\nregion r1, r2\n"
     "fluent RobotIn(region)\nfluent BoxIn(region)\nfluent Holding()\nfluent Grasped()\n"
@@ -27,7 +27,7 @@ constexpr const char* kPlacing =
     "[region1,region2,time] region1!=region2 -> Terminates(Place(region1),BoxIn(region2),time).\n"
     "[region,time] Terminates(Place(region),Holding(),time).\n";
 
-/// A scenario of its own with this model; `ok`: what the plan takes for a successful pick-up.
+/// A scenario of its own with this model; `ok`: the plan's condition for a successful pick-up.
 void write_scenario(const CliFixture& cli, const std::string& model, const std::string& ok,
                     const std::string& plan = "fetch.lisp") {
   cli.write("own.e", kDriving + model);
@@ -50,7 +50,7 @@ Json transient(const CliFixture& cli) {
   const auto rates = json_of(cli, {"rates", "own.yaml", "--runs", "5"});
   CHECK(rates.at("compare") == "every-step");
   CHECK(rates.at("traces").at(0).at("any").at("count") == 5);
-  // Who looks at the last state only sees nothing, and is told so.
+  // A comparison of the last state only sees nothing, and the report says so.
   const auto last =
       json_of(cli, {"run", "own.yaml", "--compare", "final", "--epsilon", "0.4", "--out", "last"});
   CHECK(last.at("compare") == "final");

@@ -34,8 +34,8 @@ class ExecutedJournal : public TwoModels {
     json_of(*this, {"run", "two/own.yaml", "--out", "out", "--seed", "3"}, 1);
     journal_ = read("out/journal.ndjson");
   }
-  /// With `from` changed to `to` in the line of the discrepancy and in that of its repetition, or
-  /// in the latter alone, every reader refuses the line.
+  /// Checks that every reader refuses the line with `from` changed to `to` in the line of the
+  /// discrepancy and in that of its repetition, or in the latter alone.
   void refused(const std::string& from, const std::string& to, const std::string& why,
                bool repetition = false) const {
     const auto line_of = journal_.find("\"phase\":\"confirm\"");

@@ -38,8 +38,8 @@ inline std::string executed(const TwoModels& cli, const std::string& model, cons
   return "two/own.yaml";
 }
 
-/// A folder for such plans: the drawer is shut at first, a plan can ask whether it is open, and
-/// what the world shows of sticking and parking is settled.
+/// A folder for such plans: the drawer is shut at first, a plan can ask whether it is open, and the
+/// mapping covers sticking and parking.
 class ExecutedRuns : public TwoModels {
  public:
   ExecutedRuns() {

@@ -49,7 +49,7 @@ TEST_CASE("what a plan does after failures by their reasons is followed by the m
   const auto checked = json_of(cli, {"monitor", scenario, "out"});
   CHECK(checked.at("runs").size() == report.at("simulations"));
   CHECK(cli.parallax({"replay", "out"}).code == 0);
-  // As a log, too: the robot's plan handles what is raised.
+  // As a log, too: the robot's plan handles the raised failure.
   cli.write("log.jsonl", R"j({"t": 1, "event": "OpenDrawer(top)", "outcome": "failed"}
 {"t": 2, "event": "Reach()", "outcome": "ok"}
 )j");

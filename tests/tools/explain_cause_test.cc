@@ -78,7 +78,7 @@ TEST_CASE("executions from the state that the discrepancy began in") {
   fs::remove_all(cli.folder() / "out" / "further");
   json_of(cli, {"explain", "out", "--jobs", "3"}, 1);
   CHECK(cli.read("out/further/journal.ndjson") == further);
-  // Chance is told apart: from one start so and so.
+  // Chance is distinguished: the same start gives different outcomes.
   REQUIRE(cli.parallax({"run", "two/sticks.yaml", "--execution", "closed-loop", "--out", "sticks"})
               .code == 1);
   CHECK(json_of(cli, {"explain", "sticks"}, 1).at("cause") == "random");

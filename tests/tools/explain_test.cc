@@ -164,7 +164,7 @@ TEST_CASE("a discrepancy of a run is laid to the axioms that exclude what was se
   // It forgets that the box must be in the robot's region.
   CHECK(holds(result.out, "wrong_domain.e:32  [time] Initiates(PickUp(),Holding(),time)\n"));
   CHECK(cli.parallax({"explain", "r", "--sample", "9.9"}).code == 2);
-  // What a folder of a run cannot be asked is refused, not passed over.
+  // Questions that a run folder cannot answer are refused, not passed over.
   CHECK(cli.parallax({"explain", "r", "--why", "HoldsAt(Holding(),1)"}).code == 2);
   CHECK(cli.parallax({"explain", "r", "--until", "x("}).code == 2);
   CHECK(cli.parallax({"explain", "."}).code == 2);

@@ -1,4 +1,4 @@
-// What `run` claims of several traces together, as users read it.
+// Claims of `run` about several traces together, as users read them.
 
 #include <doctest/doctest.h>
 
@@ -86,7 +86,8 @@ TEST_CASE("one sentence about all traces: in the summary, both reports and the p
   CHECK(has(page, kSentence));
   CHECK(has(page, "112 clean runs of each of 3 traces"));
 
-  // The same from workers, and where a run was ended between what one and what three traces need.
+  // The same from workers, and if a run was ended between the runs that one trace and that three
+  // traces need.
   CHECK(cli.parallax({"run", "ways.yaml", "--out", "jobs", "--jobs", "3"}).code == 0);
   CHECK(cli.read("jobs/journal.ndjson") == cli.read("run/journal.ndjson"));
   auto journal = cli.read("run/journal.ndjson");

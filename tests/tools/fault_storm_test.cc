@@ -1,5 +1,5 @@
-// More than five hundred faults of a simulator in one campaign: every one is told for what it is,
-// no result that was finished is lost, and no process is left.
+// More than five hundred faults of a simulator in one campaign: every one is reported with its
+// kind, no finished result is lost, and no process is left.
 
 #include <signal.h>
 

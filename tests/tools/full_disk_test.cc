@@ -1,4 +1,4 @@
-// What cannot be written is told, with an exit code other than 0: on standard output and in files.
+// Failed writes are reported, with an exit code other than 0: on standard output and in files.
 
 #include <doctest/doctest.h>
 

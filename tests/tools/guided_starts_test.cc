@@ -86,7 +86,7 @@ TEST_CASE("guided starts come where drawn ones hardly do, and no claim is about 
   const auto uniform = json_of(cli, {"run", "lamps.yaml", "--out", "uniform", "--seed", "1"});
   CHECK_FALSE(uniform.at("traces").at(0).contains("chosen_starts"));
   CHECK(json_of(cli, {"coverage", "uniform"}).at("performs").at(0).at("hits") == 0);
-  // What is bounded is about drawn starts: those that were chosen do not count.
+  // The bounds are about drawn starts: chosen starts do not count.
   for (const auto& never : coverage.at("never_shown")) CHECK(never.at("executions") == 90);
 
   // The same bytes for any number of workers, and for a run that was ended half-way.

@@ -1,4 +1,4 @@
-// The discrepancies of the kitchen come from its physics: what causes them is taken out of the
+// The discrepancies of the kitchen come from its physics: their causes are taken out of the
 // scenario files and put back, with plan, model and mapping as they are.
 
 #include <doctest/doctest.h>
@@ -32,7 +32,7 @@ const Setup kOffTheGaze = {
     "regions: {sets: {drawers: {cells: {dTop: {start: {x: [-0.12, -0.10], y: [0.10, 0.115]}}}}}}\n",
     "1", "Detect(spoon): object-not-found"};
 
-/// How many of kRuns simulations go wrong in the way of `setup`, and whether others do.
+/// Number of kRuns simulations that go wrong in the way of `setup`. Checks that others do not.
 int count(const Setup& setup, const std::string& change = {}) {
   const KitchenCopy cli;
   cli.write("kitchen/variant.yaml", "include: " + setup.scenario + "\n" + setup.starts + change);

@@ -16,7 +16,7 @@ bool holds(const std::string& text, const std::string& part) {
 
 using Json = nlohmann::json;
 
-/// A world of words behind the protocol: what is picked up at 1.75 slips.
+/// A world of words behind the protocol: a box that is picked up at 1.75 slips.
 constexpr const char* kWords = R"sh(robot=0.5 box=1.5 held=false
 number() { rest=${line#*"\"$1\":"}; rest=${rest%%,*}; echo "${rest%%\}*}"; }
 while read -r line; do
@@ -154,7 +154,7 @@ TEST_CASE("runs by a law: the claim names it, they repeat bit for bit, and go on
     document->erase("discrepancies");  // their commands name the folder
   }
   CHECK(jobs == alone);
-  // The whole account and the short one say what was refused; a claim stands where runs were clean.
+  // The long and the short report state the refused draws; a claim stands where runs were clean.
   const auto account = cli.parallax({"run", "law.yaml", "--out", "three", "-v"});
   CHECK(account.out.find("start law") != std::string::npos);
   CHECK(account.out.find("refused") != std::string::npos);

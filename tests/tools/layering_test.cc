@@ -53,8 +53,8 @@ std::vector<Include> includes_of(const std::string& file) {
 /// "compiler/ground" of "compiler/ground/effects.h".
 std::string folder_of(const std::string& path) { return path.substr(0, path.rfind('/')); }
 
-/// What the build says of the folders: the libraries whose sources lie there, and what each library
-/// depends on. CMake writes it down from the same lists that the linker gets.
+/// The build's structure: the libraries whose sources lie in each folder, and the dependencies of
+/// each library. CMake writes it down from the same lists that the linker gets.
 struct Layers {
   std::map<std::string, std::set<std::string>> libraries;  // by folder
   std::map<std::string, std::set<std::string>> depends;    // by library
@@ -115,7 +115,7 @@ int floor_of(const std::string& folder) {
 TEST_CASE("the libraries stand on floors, and none leans on one above it") {
   const auto layers = Layers::read();
   REQUIRE(layers.depends.size() > 20);
-  // What the upper floors see of the compiler: the compiled model as data, never the front end.
+  // The upper floors see only the compiled model as data, never the compiler's front end.
   const std::set<std::string> data = {"parallax::base", "parallax::artifact"};
   std::set<std::string> placed;
 
@@ -169,7 +169,7 @@ TEST_CASE("a file includes only what its library depends on") {
 
 TEST_CASE("each third-party library stays behind its seam") {
   struct Seam {
-    std::string prefix;               // of the include
+    std::string prefix;               // prefix of the included path
     std::vector<std::string> places;  // path prefixes that may have it
   };
   const std::vector<Seam> seams = {

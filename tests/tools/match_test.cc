@@ -1,4 +1,5 @@
-// What an end state is held against, and what of a designator reaches the simulated motion.
+// The two rules for judging an end state, and numbers of a designator that reach the simulated
+// motion.
 
 #include <doctest/doctest.h>
 
@@ -13,8 +14,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// edge.yaml with another last axiom group: what placing does is left open. `released` are the
-/// fluents that it releases, `ok` what the plan takes for success.
+/// edge.yaml with another last axiom group: the effect of placing is left open. `released` are the
+/// fluents that it releases, `ok` the plan's condition for success.
 void open_placing(const CliFixture& cli, const std::string& released, const std::string& ok) {
   cli.replace("domain.e", "Initiates(Place(region),BoxIn(region),time).", released);
   cli.replace("robot.bind", "ok: BoxIn(region(?p)) @t+1\n                             else manip",
@@ -61,10 +62,10 @@ TEST_CASE("an end that the trace does not have and the model admits: trace repor
   CHECK(admitted > 0);
   CHECK(admitted < 10);
 
-  // What the scenario says holds until the command line says more.
+  // The scenario's key holds until the command line overrides it.
   cli.replace("edge.yaml", "horizon: 6", "horizon: 6\nmatch: trace");
   CHECK(run(cli, {"--out", "said"}, 1)["verdict"] == "discrepancy");
-  // The same starts: what one rule admits, the other counts.
+  // The same starts: those that one rule admits, the other counts.
   CHECK(count(cli, "trace", "10") == admitted);
   CHECK(count(cli, "model", "10") == 0);
 }
@@ -141,7 +142,7 @@ TEST_CASE("a number in a designator of the plan changes the simulated motion") {
   const auto slow = drive("0.1"), fast = drive("0.25");
   CHECK(slow.way_m == doctest::Approx(fast.way_m).epsilon(0.02));
   CHECK(slow.way_m > 0.25);
-  // A trapezoid takes way / speed + speed / acceleration; what follows it is the same for both.
+  // A trapezoid takes way / speed + speed / acceleration; the time after it is the same for both.
   const double expected_s = slow.way_m * (1 / 0.1 - 1 / 0.25) + (0.1 - 0.25) / 1.0;
   CHECK(slow.time_s - fast.time_s == doctest::Approx(expected_s).epsilon(0.1));
 }

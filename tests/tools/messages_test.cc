@@ -118,7 +118,7 @@ TEST_CASE("a list without a trace points to the command that explains it") {
   CHECK(cli.parallax({"explain", "m.e"}).code == 1);
   const auto until = cli.parallax({"traces", "m.e", "--until", "HoldsAt(F(),time)"});
   CHECK(contains(until.err, "parallax explain m.e --until \"HoldsAt(F(),time)\""));
-  // Whoever asks for the rest of a list, or is happy with what there is, is told nothing.
+  // There is no advice about the rest of a list, or about a list that has traces.
   cli.write("ok.e", "range time 0 1\nfluent F()\n");
   CHECK_FALSE(contains(cli.parallax({"traces", "ok.e", "--from", "9"}).err, "explain"));
   CHECK_FALSE(contains(cli.parallax({"traces", "ok.e"}).err, "explain"));

@@ -1,5 +1,5 @@
-// `parallax traces --minimize`: best traces, the proof that there are no better ones, and what is
-// said where that is not known.
+// `parallax traces --minimize`: best traces, the proof that there are no better ones, and the
+// message where that is not known.
 
 #include <doctest/doctest.h>
 
@@ -242,7 +242,7 @@ TEST_CASE("what cannot be an objective is refused at its place") {
   CHECK(cli.parallax({"traces", "m.dec.cnf", "--minimize", "count Happens(event,time)"}).code == 2);
 }
 
-/// How often an atom is in the lists called `name` of a trace.
+/// Number of times that an atom is in the lists called `name` of a trace.
 std::size_t times_of(const Json& trace, const char* name, const std::string& atom) {
   std::size_t times = 0;
   for (const auto& point : trace.at("timepoints")) {

@@ -54,7 +54,7 @@ constexpr const char* kLane = R"(<mujoco>
 </mujoco>
 )";
 
-/// What MJCF cannot say: roles, forces of motors, what a start sets.
+/// Keys for what MJCF cannot express: roles, forces of motors, variables that a start sets.
 constexpr const char* kRoles = R"(mjcf: lane.xml
 friction: {default: 0.5, box-floor: 0.5, box-pad: 0.6}
 floor_material: floor

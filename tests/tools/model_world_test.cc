@@ -24,7 +24,7 @@ TEST_CASE("two models that agree: clean, with the claim, and the same bytes for 
   CHECK(trace.at("events") == Json({"OpenDrawer(top)", "CloseDrawer(top)", "Park()"}));
   CHECK(trace.at("certified").at("epsilon") <= 0.05);
   CHECK(trace.at("strayed") == 0);
-  // The start is told by its state; its variables are the same once more.
+  // The start is given by its state; its variables are the same once more.
   CHECK(cli.read("one/report.txt").find("start region") == std::string::npos);
   CHECK(
       json_of(cli, {"run", "two/agree.yaml", "--out", "three", "--jobs", "3"}).at("simulations") ==
@@ -77,7 +77,7 @@ TEST_CASE("an effect that the model forgets is found in the first run, where it 
   const auto why = cli.parallax({"explain", "out"});
   CHECK(why.code == 1);
   CHECK(why.out.find("inertia of Parked()") != std::string::npos);
-  // Who says that it is not to be compared gets what was asked for.
+  // A fluent that is ignored is not compared.
   cli.write("two/rest.yaml", "include: unparks.yaml\nmapping: {Parked(): ignored}\nexpect:\n");
   CHECK(json_of(cli, {"run", "two/rest.yaml", "--epsilon", "0.3"}).at("verdict") ==
         "no-discrepancy");
@@ -129,7 +129,7 @@ TEST_CASE("the plan's poses lie in regions, whatever the world is") {
 
 TEST_CASE("the kitchen's model is right about a world that is the kitchen's model") {
   const KitchenCopy cli;
-  // Without what the words mean in physics.
+  // Without the mapping of the words to physics.
   const auto common = cli.read("kitchen/household.yaml");
   cli.write("kitchen/household.yaml", common.substr(0, common.find("\nmapping:") + 1));
   for (const std::string plan : {"plan1", "plan3"}) {
@@ -217,7 +217,7 @@ TEST_CASE("what is wrong with the world is said at its place, by check and by ru
           "two/own.yaml:3:11-18");
   refused(cli.world(whole, "actions: {Park(): {controller: Park(), force_n: 3}}\n"), "E5121",
           "two/own.yaml:3:49");
-  // 2^13 initial states fit what the mapping says of the start.
+  // 2^13 initial states fit the mapping of the start.
   std::string open_fluents = whole;
   for (int i = 0; i < 13; ++i) open_fluents += "fluent Open" + std::to_string(i) + "()\n";
   refused(cli.world(open_fluents), "E7109", "more than 4096 initial states");
@@ -260,7 +260,7 @@ TEST_CASE("a link out of the folder is refused alike, whether it leads to a file
   fs::create_directory_symlink("../nowhere", cli.folder() / "two/elsewhere");
   cli.replace("two/own.yaml", "link.e", "elsewhere/link.e");
   CHECK(cli.parallax({"check", "two/own.yaml"}).err.find("E1016") != std::string::npos);
-  // One that stays inside is told to lead nowhere.
+  // A link that stays inside is reported to lead nowhere.
   fs::remove(cli.folder() / "two/link.e");
   fs::create_symlink("nothing.e", cli.folder() / "two/link.e");
   cli.replace("two/own.yaml", "elsewhere/link.e", "link.e");

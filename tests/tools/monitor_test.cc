@@ -1,4 +1,4 @@
-// A log held against model and plan, by the program: files, pipes, run folders, bad input.
+// A log compared with model and plan, by the program: files, pipes, run folders, bad input.
 
 #include <doctest/doctest.h>
 #include <sys/stat.h>
@@ -26,7 +26,7 @@ std::string event(double t, const std::string& name, const std::string& outcome 
   return Json{{"t", t}, {"event", name}, {"outcome", outcome}}.dump() + "\n";
 }
 
-/// What the plan of scenario.yaml does where all goes well.
+/// Log of an execution of scenario.yaml's plan in which all goes well.
 std::string fetching() {
   return state(0, 0.5, 1.5, false) + event(1, "Go(r2)") + state(1.1, 1.5, 1.5, false) +
          event(2, "PickUp()") + state(2.1, 1.5, 1.5, true) + event(3, "Go(r1)") +
@@ -177,7 +177,7 @@ TEST_CASE("a byte order mark is no part of a log") {
   CHECK(json_of(cli, {"monitor", "scenario.yaml", "log"}).at("compared") == 1);
   cli.write("log", mark + "t,t\n");
   CHECK(cli.parallax({"monitor", "scenario.yaml", "log"}).err.find("log:1:6: error[E7401]") == 0);
-  // Elsewhere it is a text that nobody asked for.
+  // Elsewhere a byte order mark is unexpected text.
   cli.write("log", "t,robot.x\n" + mark + "0,0.5\n");
   CHECK(cli.parallax({"monitor", "scenario.yaml", "log"}).code == 3);
 }
@@ -210,7 +210,7 @@ TEST_CASE("events that the log does not name may have happened where the scenari
             "include: own.yaml\nevents: {unobserved: []}\n"
             "actions: {Slip(): {controller: going}}\n");
   CHECK(json_of(cli, {"monitor", "seen.yaml", "log.jsonl"}, 1).at("first").at("line") == 6);
-  // An action for what is not observed is one for an event of the model all the same.
+  // An action for an unobserved event is still one for an event of the model.
   cli.write("both.yaml", "include: own.yaml\nactions: {Slip(): {controller: going}}\n");
   CHECK(cli.parallax({"monitor", "both.yaml", "log.jsonl"}).err.empty());
   CHECK(json_of(cli, {"monitor", "seen.yaml", "log.jsonl", "--unobserved", "Slip"}).at("verdict") ==
@@ -279,7 +279,7 @@ TEST_CASE("unobserved events happen while the plan waits, and nothing is known b
   CHECK(cut.at("first").at("line") == 33);
   CHECK(cut.at("because").get<std::string>().find("`loop` at two/many.lisp:3") !=
         std::string::npos);
-  // What the axioms rule out is inconsistent there as well.
+  // An event that the axioms rule out is inconsistent there as well.
   cli.write("two/closed.e",
             "[drawer,time] Happens(CloseDrawer(drawer),time) -> HoldsAt(Open(drawer),time).\n");
   cli.write("two/closed.yaml", "include: many.yaml\nmodel: [slams.e, start.e, closed.e]\n");
@@ -399,7 +399,7 @@ TEST_CASE("every recorded simulation is checked again: discrepancies at their st
       }
     }
   }
-  // What no simulator of the scenario says is no observation.
+  // A value that no simulator of the scenario reports is no observation.
   auto journal = cli.read("out/scenario/journal.ndjson");
   const std::string held = R"j("box.held":false)j";
   const auto at = journal.find(held, journal.find(R"j("observations":[)j"));

@@ -1,4 +1,4 @@
-// `parallax new`: what it makes runs; nothing is replaced.
+// `parallax new`: the project that it creates runs; nothing is replaced.
 
 #include <sys/stat.h>
 
@@ -90,7 +90,7 @@ TEST_CASE("names and places that will not do are one message") {
   CHECK(nowhere.code == 2);
   CHECK(nowhere.err.find("error[E0005]") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(cli.folder() / "x"));
-  // Where nobody may write, not even who may do anything else.
+  // Where nobody may write, not even a privileged user.
   const auto closed = cli.parallax({"new", "/proc/self/x"});
   CHECK(closed.code == 2);
   CHECK(closed.err.find("error[E0005]") != std::string::npos);

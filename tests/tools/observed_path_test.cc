@@ -13,7 +13,7 @@ namespace {
 
 using tools::ObservedPath;
 
-/// A run folder and what is read from it.
+/// A run folder, and the paths that are read from it.
 struct Read {
   tools::Context context;
   std::optional<tools::ScenarioModel> loaded;
@@ -39,7 +39,7 @@ struct Read {
     CHECK_FALSE(found.undecided);
     return found.after;
   }
-  /// What is held against the model; none: left open.
+  /// The observed value that is compared with the model; none: left open.
   std::optional<bool> seen(std::size_t path, std::size_t t, const std::string& fluent) const {
     const compiler::SymbolTable symbols(loaded->compilation.model);
     const auto& state = paths.at(path).states.at(t);

@@ -1,7 +1,7 @@
 // Nothing that steers a terminal, a CI system or a spreadsheet leaves the program, whatever files,
-// simulators, logs and names of files say: hostile texts are put into every place, every command
-// runs, and all that it prints and writes is looked through. And one that sources are held to:
-// standard output, standard error and files are written in few places.
+// simulators, logs and file names contain: hostile texts are put into every place, every command
+// runs, and all of its output is checked. Also a rule for the sources: standard output, standard
+// error and files are written in few places.
 
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -37,7 +37,7 @@ std::string quoted(const std::string& before, const std::string& after) {
          "\"";
 }
 
-/// What is wrong with a text that people see; empty: nothing.
+/// The first fault in a text that people see; empty if there is none.
 std::string fault_of(const std::string& text, bool has_lines = true) {
   for (std::size_t i = 0; i < text.size();) {
     const auto point = base::front_code_point(std::string_view(text).substr(i));
@@ -370,7 +370,7 @@ done
   CHECK(evil.kinds().contains(".csv"));
 }
 
-/// The sources of the program, without what is a program of its own.
+/// The sources of the program, without those of separate programs.
 std::vector<std::string> sources() {
   const fs::path root = PARALLAX_SOURCE_DIR;
   std::vector<std::string> files;

@@ -41,7 +41,7 @@ ProcessResult until(const CliFixture& cli, const std::string& formula) {
   return cli.parallax({"traces", "m.e", "--until=" + formula, "--limit=0"});
 }
 
-/// What is no formula: the text, and where the message points to.
+/// A text that is no formula, and the place that the message points to.
 struct Refused {
   std::string text;
   std::string place;

@@ -1,4 +1,4 @@
-// docs/plan_language.md: its commands and its example do what the page says.
+// docs/plan_language.md: its commands and its example work as the page says.
 
 #include <doctest/doctest.h>
 

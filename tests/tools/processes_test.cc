@@ -1,5 +1,5 @@
-// What a command has started ends with it, however it ends: cases of a suite, simulators, and what
-// simulators leave behind in sessions of their own.
+// Every process that a command has started ends with it, however it ends: cases of a suite,
+// simulators, and processes that simulators leave behind in sessions of their own.
 
 #include <signal.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// `parallax prove`: what it prints, its certificate, and what it refuses.
+// `parallax prove`: its output, its certificate, and the cases that it refuses.
 
 #include <doctest/doctest.h>
 
@@ -172,7 +172,7 @@ TEST_CASE("prove: a simulation that contradicts a certificate is told") {
   CAPTURE(open.err);
   CHECK(open.code == 4);
   CHECK(says(open.out, "simulated  refused: 0 of 0 safe, 0 of 0 refuted, "));
-  // What the middle of the box contradicts is wrong, whatever simulations say.
+  // A verdict that the middle of the box contradicts is wrong, whatever simulations say.
   const auto refuted = check("refuted");
   CHECK(says(refuted.out, "0 boxes confirmed, 0 not confirmed, 1 wrong"));
   CHECK(refuted.code == 1);

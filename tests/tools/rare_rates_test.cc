@@ -1,4 +1,4 @@
-// `parallax rates --method`: what is too rare to be counted.
+// `parallax rates --method`: rates that are too small to be found by counting.
 
 #include <doctest/doctest.h>
 
@@ -27,7 +27,7 @@ TEST_CASE("rare rates: bad input") {
   CHECK(few.code == 2);
   CHECK(holds(few.err, "fewer than 3500 runs"));
   CHECK(cli.parallax({"rates", kScenario, "--method", "guessing"}).code == 2);
-  // What was estimated in this way is no count, and is not compared as one.
+  // A rate that was estimated in this way is no count, and is not compared as one.
   cli.write("rare.json",
             R"({"status":"ok","scenario":"s","seed":1,"confidence":0.95,"method":"importance",)"
             R"("compare":"every-step","complete":true,"traces":[{"trace":1,"events":"Go",)"

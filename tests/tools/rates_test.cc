@@ -35,7 +35,7 @@ double crossing(const Function& decreasing, double level) {
 }
 
 /// The interval of Clopper and Pearson by its definition: the p under which a count as extreme as
-/// this one has half of what the confidence leaves.
+/// this one has half of the error probability.
 void check_interval(const Json& rate, int runs, double confidence) {
   const int count = rate["count"];
   CAPTURE(rate.dump());

@@ -1,5 +1,5 @@
-// What a run was asked for, as the header of its journal says it: wrong values are told at their
-// line, whoever reads it, and rounds of repair ask for the same again.
+// Options of a run, as the header of its journal records them: wrong values are reported at their
+// line, whoever reads it, and rounds of repair use the same options.
 
 #include <doctest/doctest.h>
 
@@ -73,7 +73,7 @@ TEST_CASE("a header with wrong options is refused by all that read it, at its li
       CHECK(result.err.find(": error[E7103]: this line is not one of the journal: `options") !=
             std::string::npos);
     }
-    // A page shows what is there, and says what is not.
+    // A page shows the parts that are there, and names those that are not.
     CHECK(cli.parallax({"report", "out", "-o", "page.html"}).code <= 3);
   }
 }
@@ -115,7 +115,7 @@ TEST_CASE("rounds of repair keep what the run was asked for") {
 
 TEST_CASE("a run of every initial state is explained with further runs of its own traces") {
   const TwoModels cli;
-  // Half of the starts go wrong, by what the model has no word for.
+  // Half of the starts go wrong, for a reason that the model has no word for.
   cli.world("load opens.e\n\n[drawer,time] Terminates(OpenDrawer(drawer),Parked(),time).\n");
   json_of(cli, {"run", "two/own.yaml", "--out", "out", "--split-initial"}, 1);
   const auto told = json_of(cli, {"explain", "out"}, 1);

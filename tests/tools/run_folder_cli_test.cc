@@ -65,7 +65,7 @@ TEST_CASE("--scenario says where the scenario of a run lies by now") {
     CAPTURE(command);
     CHECK(cli.parallax({command, "r"}).code == 3);
     CHECK(cli.parallax({command, "r", "--scenario", there}).code == (command == "explain" ? 1 : 0));
-    // Another scenario, and one that is none.
+    // Another scenario, and a file that does not exist.
     CHECK(cli.parallax({command, "r", "--scenario", "elsewhere/edge.yaml"}).code == 3);
     CHECK(cli.parallax({command, "r", "--scenario", "nowhere.yaml"}).code == 2);
   }

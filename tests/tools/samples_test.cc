@@ -63,7 +63,7 @@ TEST_CASE("rates: one row a simulation, which add up to the counts by cause") {
     CHECK(example.at("reason") == cause["reason"]);
     CHECK(std::stod(example.at("start.robot.x")) == cause["start"]["robot.x"].get<double>());
   }
-  // The arm ends 0.6 m from the base: what the margin says is what the start's geometry does.
+  // The arm ends 0.6 m from the base: the margin equals the geometry of the start.
   int refused = 0;
   for (const auto& row : rows) {
     const auto& margin = row.at("margin.0.reach");

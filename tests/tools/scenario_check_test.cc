@@ -1,4 +1,5 @@
-// `parallax check SCENARIO` finds what `parallax run` would find before its first simulation.
+// `parallax check SCENARIO` finds the faults that `parallax run` would find before its first
+// simulation.
 
 #include <doctest/doctest.h>
 
@@ -10,7 +11,7 @@
 namespace parallax::test {
 namespace {
 
-/// Both commands; what `check` says.
+/// Runs `check`, which leaves no run folder, and returns its messages.
 std::string check(const CliFixture& cli, int code) {
   const auto result = cli.parallax({"check", "scenario.yaml"});
   CAPTURE(result.err);
@@ -49,7 +50,7 @@ TEST_CASE("check names ignored fluents that the model leaves open at the start")
   cli.replace("common.yaml", "Holding(): {flag: box.held}",
               "Holding(): {flag: box.held}\n  Wet(region): ignored");
   CHECK(has(check(cli, 0), "warning[W5309]: the model leaves `Wet(r1)` and 1 more of it open"));
-  // Said by an axiom about the start, or a consequence of what is compared: nothing is open.
+  // Settled by an axiom about the start, or by compared fluents: nothing is open.
   for (const char* axiom : {"[region] !HoldsAt(Wet(region),0).",
                             "[region,time] HoldsAt(Wet(region),time) <-> "
                             "HoldsAt(BoxIn(region),time)."}) {
@@ -152,7 +153,7 @@ TEST_CASE("check of a scenario lints its model as check of the model does") {
   CHECK(said == model.err);
   CHECK(cli.parallax({"check", "scenario.yaml", "--no-lint"}).err == "no errors\n");
   CHECK(cli.parallax({"check", "scenario.yaml", "--allow", "W2101"}).err == "no errors\n");
-  // Only who asks is told.
+  // Only `check` reports it.
   CHECK_FALSE(has(cli.parallax({"run", "scenario.yaml"}).err, "W2101"));
 }
 

@@ -1,4 +1,4 @@
-// `parallax suite` on scenarios: what a case may expect, how it ends, and what is reported of it.
+// `parallax suite` on scenarios: the expectations of a case, its outcome, and the report.
 
 #include <doctest/doctest.h>
 
@@ -17,7 +17,7 @@ bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// Replaces what wrong_model.yaml, the quickest of the scenarios, expects.
+/// Replaces the expectation of wrong_model.yaml, the quickest of the scenarios.
 void expect(const CliFixture& cli, const std::string& name, const std::string& what) {
   auto text = cli.read("wrong_model.yaml");
   cli.write(name, text.erase(text.find("expect:")) + "expect: " + what + "\n");

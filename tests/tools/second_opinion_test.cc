@@ -1,4 +1,4 @@
-// `parallax run --second-opinion`: what another engine, or another simulator, makes of a run.
+// `parallax run --second-opinion`: the outcome of a run in another engine, or in another simulator.
 
 #include <doctest/doctest.h>
 
@@ -156,7 +156,7 @@ TEST_CASE("ode and mujoco about the box at the border") {
   CHECK(opinion["first"].get<std::string>().starts_with("ode "));
   CHECK(opinion["other"].get<std::string>().starts_with("mujoco "));
   CHECK(opinion["causes"].size() == 1);
-  // The other way round, and the engine is on record: what mujoco made is repeated by mujoco.
+  // The other way round, and the engine is on record: a run made by mujoco is repeated by mujoco.
   cli.write("soft.yaml", "include: edge.yaml\nsimulator: {engine: mujoco}\n");
   const auto back = cli.parallax({"run", "soft.yaml", "--out", "s", "--json", "--second-opinion",
                                   "ode", "--second-opinion-runs", "6"});

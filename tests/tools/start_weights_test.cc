@@ -1,5 +1,5 @@
-// Closed loop with initial states drawn by weight: how often each comes against what its weight
-// says, what is claimed of which law, and what is wrong with weights.
+// Closed loop with initial states drawn by weight: frequencies compared with the weights, claims
+// and the law that they are about, and faults in weights.
 
 #include <doctest/doctest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Two lamps, which are on or off at the start, and a switch for what is on; `Hidden` is not
+/// Two lamps, which are on or off at the start, and a switch for those that are on; `Hidden` is not
 /// compared.
 class Lamps : public CliFixture {
  public:
@@ -43,7 +43,7 @@ class Lamps : public CliFixture {
   }
 };
 
-/// How many executions began with which lamps on: "a", "ab", "".
+/// Number of executions that began with these lamps on: "a", "ab", "".
 std::map<std::string, int> starts_of(const CliFixture& cli, const std::string& folder) {
   std::map<std::string, int> out;
   std::istringstream in(cli.read(folder + "/journal.ndjson"));
@@ -148,7 +148,7 @@ TEST_CASE("start weights: what is wrong with them is said at its place") {
     CHECK(result.err.find("error[" + bad.code) != std::string::npos);
     CHECK(result.err.find(bad.text) != std::string::npos);
   }
-  // `check` says what formulas are wrong with.
+  // `check` reports the faults in formulas.
   const auto checked =
       cli.parallax({"check", cli.weights("[{when: \"HoldsAt(Onn(a),time)\", weight: 1}]")});
   CHECK(checked.code == 3);

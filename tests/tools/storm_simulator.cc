@@ -1,5 +1,5 @@
-// A simulator that fails in every way that a process can, for about half of its starts. What it
-// does is decided by the start, and written to the file of its first argument before it is done. It
+// A simulator that fails in every way that a process can, for about half of its starts. The start
+// decides the fault, which is written to the file of the first argument before it happens. It
 // shares no code with the harness.
 
 #include <fcntl.h>

@@ -1,5 +1,5 @@
-// What interchangeable constants are good for: `traces --up-to-symmetry`, and claims that rest on
-// symmetry, which say so.
+// Uses of interchangeable constants: `traces --up-to-symmetry`, and claims that rest on symmetry,
+// which say so.
 
 #include <doctest/doctest.h>
 
@@ -17,7 +17,7 @@ std::string numbered(const std::string& letter, int count) {
   return out;
 }
 
-/// At most one bird in a hole, and none in two.
+/// A model with at most one bird in a hole, and no bird in two.
 std::string holes(int birds, int holes, const std::string& more = "") {
   return "range time 0 1\nsort bird\nsort hole\nbird " + numbered("B", birds) + "\nhole " +
          numbered("H", holes) +
@@ -67,7 +67,7 @@ TEST_CASE("no trace that reaches a goal, and a property that holds") {
   const auto answer = json_of(cli, {"verify", "many.e", "--property", property}, 0);
   CHECK(answer["proof"] == "none");
   CHECK(answer["symmetry"] == true);
-  // What is easy is proved.
+  // An easy property is proved.
   cli.write("few.e", holes(4, 3));
   CHECK(cli.parallax({"verify", "few.e", "--property", property}).out ==
         "holds up to horizon 1 (proof checked)\n");
@@ -83,7 +83,7 @@ TEST_CASE("a goal or a property that names a constant is not lost") {
     CHECK(cli.parallax({"verify", "things.e", "--property", "!(" + only + ")"}).code == 1);
     CHECK(cli.parallax({"traces", "things.e", "--limit", "1", "--until", only})
               .out.find("+ Held(" + name + ")") != std::string::npos);
-    // Of four sets of events with this one, two are exchanged.
+    // Two of the four sets of events with this one are exchanged.
     const auto orbits = cli.parallax(
         {"traces", "things.e", "--limit", "0", "--up-to-symmetry", "--until", held, "--count"});
     CHECK(orbits.out == "3 up to symmetry, 4 in all\n");
@@ -118,7 +118,7 @@ TEST_CASE("--up-to-symmetry: one trace of each orbit, and the sizes add up") {
   // The limit stops in the middle.
   const auto some = cli.parallax({"traces", "things.e", "--limit", "2", "--up-to-symmetry"});
   CHECK(some.out.ends_with("2 traces up to symmetry, 4 in all so far, stopped\n"));
-  // Of the compiled file the same.
+  // The compiled file gives the same list.
   CHECK(cli.parallax({"compile", "things.e", "-o", "things.cnf"}).code == 0);
   CHECK(cli.parallax({"traces", "things.cnf", "--limit", "0", "--up-to-symmetry"}).out ==
         listed.out);

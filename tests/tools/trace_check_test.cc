@@ -1,4 +1,4 @@
-// `parallax traces --check`, and what it says when a trace is wrong.
+// `parallax traces --check`, and its messages when a trace is wrong.
 
 #include "tools/app/trace_check.h"
 

@@ -1,5 +1,5 @@
-// `parallax traces --format ...`: what the formats look like from outside, and how they say that a
-// list was stopped.
+// `parallax traces --format ...`: the formats from outside, and how they mark a list that was
+// stopped.
 
 #include <doctest/doctest.h>
 #include <signal.h>

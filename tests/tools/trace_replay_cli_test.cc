@@ -1,4 +1,4 @@
-// `parallax traces --replay`: traces of files, right ones, edited ones and files that are none.
+// `parallax traces --replay`: right traces, edited ones, and files that hold no traces.
 
 #include <doctest/doctest.h>
 

@@ -145,7 +145,7 @@ TEST_CASE("options that do not go together, and a strategy that cannot be had, a
   CHECK(cli.parallax({"traces", "m.e", "--until", "HoldsAt(On(A),time)", "--sample", "2"}).code ==
         2);
   cli.write("far.e", std::string(kSwitches) + "Happens(Press(A),0) | Happens(Press(A),3).\n");
-  // Counted by the graph, where a state hides what will have happened: it does not list.
+  // Counted by the graph; as a state hides what will have happened, the graph does not list.
   const auto refused = cli.parallax({"traces", "far.e", "--quiet", "--strategy", "graph"});
   CHECK(refused.code == 2);
   CHECK(refused.out.empty());

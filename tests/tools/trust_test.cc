@@ -1,4 +1,5 @@
-// What files from elsewhere can make the program read, overwrite and start: docs/trust.md.
+// Files of unknown origin: the limits on the files and programs that they can make Parallax read,
+// overwrite and start (docs/trust.md).
 
 #include <sys/stat.h>
 #include <unistd.h>

@@ -1,4 +1,5 @@
-// One definition rule across headers: a name in a namespace means one type, whoever includes what.
+// One definition rule across headers: a name in a namespace means one type, whichever headers are
+// included.
 
 #include <doctest/doctest.h>
 
@@ -27,7 +28,7 @@ std::vector<fs::path> headers() {
 }
 
 /// The types that a header defines at the level of its namespaces, as "parallax::base::Store". The
-/// layout is clang-format's: what stands in a namespace is not indented, what stands in a class is.
+/// layout is clang-format's: the content of a namespace is not indented, the content of a class is.
 std::vector<std::string> types_of(const fs::path& header) {
   static const std::regex opening(R"(namespace ([\w:]+) \{)");
   // Neither a class of a class nor a specialisation is a new name.

@@ -1,5 +1,6 @@
-// Runs that go on until everything was seen: what is looked for, why they end, what is said of what
-// was not shown, against answers known beforehand; the same bytes however they are made.
+// Runs that go on until everything was seen: the items looked for, the end of the run, and the
+// claims about items that were not shown, against answers known beforehand; the same bytes however
+// the runs are made.
 
 #include <doctest/doctest.h>
 
@@ -30,12 +31,13 @@ std::set<std::string> names(const Json& items) {
 
 const Json& cover_of(const Json& report) { return report.at("traces").at(0).at("until_covered"); }
 
-/// Drawn executions after which each of so many is rarer than 5 %, with 99 % in all of them.
+/// Drawn executions after which each of that many items is rarer than 5 %, with 99 % in all of
+/// them.
 int needed(int items) {
   return static_cast<int>(std::ceil(std::log(0.01 / items) / std::log(0.95)));
 }
 
-/// Without the ends of its lines.
+/// The text in one line.
 std::string in_one_line(const std::string& text) {
   std::string out;
   std::istringstream in(text);
@@ -61,10 +63,10 @@ TEST_CASE("until covered: all that the model has is shown, and the run ends with
   const auto text = in_one_line(cli.read("out/report.txt"));
   CHECK(text.find("shown all of 10 behaviours of plan and model") != std::string::npos);
   CHECK(text.find("impossible two/plan.lisp:2 Park() fails") != std::string::npos);
-  // Without the option nobody asks.
+  // Without the option, the report has no `until_covered`.
   const auto plain = json_of(cli, {"run", "two/own.yaml", "--out", "plain"});
   CHECK_FALSE(plain.at("traces").at(0).contains("until_covered"));
-  // What the run says is what its folder shows.
+  // The run's report agrees with its folder.
   const auto coverage = json_of(cli, {"coverage", "out"});
   for (const auto* group : {"performs", "handlers", "retries"}) {
     for (const auto& item : coverage.at(group)) CHECK(item.at("hits") > 0);
@@ -131,7 +133,7 @@ TEST_CASE("until covered: a limit ends it, and what is left is said with its bou
   CHECK(cover.at("end") == "max_runs");
   CHECK(cover.at("left").size() == 4);
   CHECK(std::pow(1.0 - cover.at("bound").get<double>(), 100) == doctest::Approx(0.001));
-  // What is claimed of starts is as good as ever.
+  // The claim about the starts is not affected.
   CHECK(report.at("traces").at(0).at("claim").get<std::string>().find("fewer than 5 %") !=
         std::string::npos);
   CHECK(in_one_line(cli.read("out/report.txt")).find("max_runs came before that was 5 %") !=

@@ -49,7 +49,8 @@ TEST_CASE("one changed byte is refused or gives a model that can be written and 
     REQUIRE(second.model);
     CHECK(compiler::to_artifact(*second.model) == again);
   }
-  // What is left says nothing: carriage returns, comments of no entry, the projection's blanks.
+  // The accepted damages change no meaning: carriage returns, comments of no entry, the
+  // projection's blanks.
   CHECK(refused > kCount * 9 / 10);
 }
 

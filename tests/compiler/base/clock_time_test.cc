@@ -39,7 +39,8 @@ TEST_CASE("a deadline that is very far is not over, and none waits longer than p
   CHECK(milliseconds_left(SteadyClock::now() - std::chrono::hours(1), 100) == 0);
   CHECK(milliseconds_left(SteadyClock::time_point::min(), 100) == 0);
   CHECK(milliseconds_left(SteadyClock::now() + std::chrono::hours(1), -5) == 0);
-  // What is left of a millisecond is waited for, and not asked for again and again.
+  // The time left is rounded up, so that poll() waits out the last fraction of a millisecond
+  // instead of being called again and again.
   CHECK(milliseconds_left(SteadyClock::now() + std::chrono::hours(1), 7) == 7);
 }
 

@@ -1,4 +1,4 @@
-// Which files a file may name.
+// The files that a file may name.
 
 #include "compiler/base/path_gate.h"
 

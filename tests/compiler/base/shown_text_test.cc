@@ -1,4 +1,5 @@
-// The output gate: what reaches terminals, CI systems and spreadsheets, whatever a text holds.
+// The output gate: text that reaches terminals, CI systems and spreadsheets is harmless, whatever
+// it holds.
 
 #include "compiler/base/shown_text.h"
 

@@ -1,4 +1,4 @@
-// What is asked of formulas once they are made: atoms, values, substitution, text.
+// Queries on finished formulas: atoms, values, substitution, text.
 
 #include <doctest/doctest.h>
 

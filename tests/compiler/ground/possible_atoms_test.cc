@@ -1,4 +1,4 @@
-// Tables of what may be true, and the rows of effects that they are bounded with.
+// Tables of possibly true atoms, and the rows of effects that they bound.
 
 #include "compiler/ground/possible_atoms.h"
 

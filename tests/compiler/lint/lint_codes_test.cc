@@ -1,4 +1,4 @@
-// Each rule finds what it is for, and leaves alone what looks like it.
+// Each rule finds its own kind of fault, and leaves similar text alone.
 
 #include <doctest/doctest.h>
 
@@ -171,7 +171,7 @@ TEST_CASE("a precondition that a completion takes for a reason") {
   CHECK(only("W2160", labelled("Theta: ")).size() == 1);
   CHECK(only("W2160", facts + needs).empty());
   CHECK(only("W2160", facts + "[a1,a2] Near(a1,a2) -> Near(a2,a1).\ncompletion Near\n").empty());
-  // What events alone bring about is defined by them.
+  // A predicate that is implied by events alone counts as defined by them.
   CHECK(only("W2160",
              "predicate Seen(a)\n[a,time] Happens(Up(a),time) -> Seen(a).\ncompletion Seen\n")
             .empty());

@@ -1,4 +1,4 @@
-// What the real CPL did with small plans, measured, and what the unroller makes of the same files.
+// Small plans: measured behaviour of the real CPL, compared with the unroller on the same files.
 #include <doctest/doctest.h>
 
 #include <algorithm>

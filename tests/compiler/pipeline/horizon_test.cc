@@ -1,4 +1,5 @@
-// A longer horizon adds to what a shorter one says, but for the formulas of which lint warns.
+// A longer horizon keeps the consequences of a shorter one, except for the formulas that lint warns
+// about.
 
 #include <doctest/doctest.h>
 
@@ -37,7 +38,7 @@ struct AtHorizon {
 /// Is the beginning of the trace one of the model, whose horizon is shorter?
 bool begins(const compiler::CompiledModel& model, runtime::SolverSession& session,
             const runtime::Trace& trace) {
-  // What has no variable is false in every trace.
+  // An atom without a variable is false in every trace.
   std::size_t left = 0;
   for (std::size_t t = 0; t <= static_cast<std::size_t>(model.horizon); ++t) {
     left += trace.holds(t).size();

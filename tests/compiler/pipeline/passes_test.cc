@@ -23,7 +23,7 @@ const char* const kSwitchModel =
     "[lamp,time] HoldsAt(Broken(lamp),time) -> !HoldsAt(On(lamp),time).\n"
     "completion Good\n";
 
-/// What the passes did, with the value after `wanted`.
+/// The log of the passes, with the value after the pass `wanted`.
 PassLog log_of(const std::string& wanted, const compiler::GroundOptions& options = {}) {
   CheckedText checked(kSwitchModel);
   REQUIRE_MESSAGE(checked.model, checked.text());

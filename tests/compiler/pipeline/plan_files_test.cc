@@ -43,7 +43,7 @@ Setting kitchen(const char* start, const char* constraint) {
   return {{kKitchen / "domain.e", start}, kKitchen / "robot.bind", constraint};
 }
 
-/// The solver's traces are the executions of the plan by hand; so many there are.
+/// Checks that the solver's traces are the executions of the plan by hand, `expected` in number.
 void check_plan(const fs::path& plan, const Setting& setting, World& world, int horizon,
                 std::size_t expected, bool complete) {
   CAPTURE(plan.string());

@@ -29,7 +29,7 @@ constexpr const char* kThings =
     "[stand,time] HoldsAt(Stands(stand),time) <-> stand=s.\n"
     "Delta: [thing,time] Happens(Look(thing),time) -> time=0.\n";
 
-/// The outcomes of one perform: "ok", "failed", or what was reported.
+/// The outcomes of one perform: "ok", "failed", or the codes that were reported.
 std::string outcome(const std::string& kind, const std::string& object,
                     const std::string& binding) {
   const auto plan = "(perform (a motion (type " + kind + ") (object (an object (name " + object +

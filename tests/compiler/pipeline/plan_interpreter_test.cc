@@ -25,7 +25,7 @@ Executions executed_by_interpreter(const PlanCase& plan_case) {
   return execute_all(plan_case.plan_text(), world, plan_case.horizon, plan_case.by_turns);
 }
 
-/// What the executions of the interpreter and the traces of the solver disagree on; empty if they
+/// Describes where the interpreter's executions differ from the solver's traces; empty if they
 /// agree.
 std::string disagreement(const PlanCase& plan_case, const Executions& executed) {
   const PlannedModel planned(plan_case.model.model_text(), plan_case.plan_text(),

@@ -99,7 +99,7 @@ class Walker final : public compiler::PlanSurroundings {
     return world_.holds(items);
   }
 
-  /// What the success formula says of the state as it is.
+  /// Result of the success formula in the current state.
   struct Judged {
     bool success = false;
     Strings found;

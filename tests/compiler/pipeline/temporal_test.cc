@@ -1,5 +1,5 @@
-// Temporal formulas as properties and as state constraints, held against every trace that a small
-// model has, worked out by an evaluator of the test's own.
+// Temporal formulas as properties and as state constraints, compared on every trace of a small
+// model with the test's own evaluator.
 
 #include <doctest/doctest.h>
 

@@ -93,7 +93,7 @@ TEST_CASE("failures: a handler is one place, whatever failed in the body") {
   (go1) (go2) (go1) (go2) (go1))
 )");
   CHECK(plan.graph->locations.size() == 5 + 2);
-  // With a clean-up in between, what is left to be cleaned up still matters.
+  // With a clean-up in between, the rest of the clean-ups still matters.
   const auto cleaned = with_prelude(R"(
 (with-failure-handling ((navigation-low-level-failure (e) (go2) (return)))
   (unwind-protect (go1) (sig))

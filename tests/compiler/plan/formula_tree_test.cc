@@ -36,7 +36,7 @@ Read read_formula(const std::string& text) {
   return out;
 }
 
-/// The leaves with what they stand for: `x` a name, `x#0` a variable, `?x@0` a parameter, `?x$0` a
+/// The leaves with their meaning: `x` a name, `x#0` a variable, `?x@0` a parameter, `?x$0` a
 /// register.
 std::string leaves(const FormulaTree& tree) {
   constexpr std::array<const char*, 4> kMarks = {"", "#", "@", "$"};
@@ -50,7 +50,7 @@ std::string leaves(const FormulaTree& tree) {
   return out;
 }
 
-/// What the checker gets, printed.
+/// The formula as the checker receives it, printed.
 std::string printed(const FormulaTree& tree) {
   base::SourceFiles files;
   const auto ast = to_ast(tree, files.add("tree", tree.text), files);

@@ -97,7 +97,7 @@ TEST_CASE("branches: after the first failure the others carry out what they wait
                               "OpenDrawer(b1) OpenDrawer(a1) Signal() Go(r2) DONE",
                               "OpenDrawer(b1) OpenDrawer(a1) Go(r1) Signal() Go(r2) DONE",
                               "OpenDrawer(b1) Go(r1) OpenDrawer(a1) Signal() Go(r2) DONE"});
-  // Of two failures the first one counts.
+  // If two branches fail, the first failure counts.
   const auto both = by_turns(
       "(with-failure-handling ((navigation-low-level-failure (e) (sig) (return)) "
       "(manipulation-low-level-failure (e) (pick) (return))) (par (go1) " +
@@ -152,7 +152,7 @@ TEST_CASE("branches: clean-up in a branch runs, also when another one's failure 
       "(par (unwind-protect (go1) (sig))"
       " (with-failure-handling ((plan-failure (e) (return))) (pick)))");
   CHECK(Ways(own).all.size() == 3);
-  // The handler decides first; what the other one still cleans up follows.
+  // The handler decides first; the other branch's clean-ups follow.
   const auto other = by_turns(
       "(with-failure-handling ((plan-failure (e) (return))) (par (unwind-protect (seq (go1) (go2)) "
       "(sig)) (pick)))" +
@@ -175,7 +175,7 @@ TEST_CASE("branches: clean-up in a branch runs, also when another one's failure 
     CHECK(way.find("OpenDrawer(b1)") != std::string::npos);
     CHECK(way.find("Go(r1)") < way.find("OpenDrawer(b1)"));
   }
-  // What fails in such a clean-up is lost.
+  // A failure inside such a clean-up is lost.
   const auto lost = by_turns(
       "(with-failure-handling ((plan-failure (e) (return))) (par (unwind-protect (go1) (go2) (sig))"
       " (pick)))");

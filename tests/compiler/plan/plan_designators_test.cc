@@ -5,7 +5,7 @@
 namespace parallax::compiler {
 namespace {
 
-/// Expressions and what they are equal to.
+/// Expressions and their expected values.
 void check_values(const std::vector<std::pair<std::string, std::string>>& cases) {
   for (const auto& one : cases) {
     const auto& expression = one.first;
@@ -73,7 +73,7 @@ TEST_CASE("designators: equating") {
       {"(let ((b (an object (n 1))) (c (an object (n 2)))) (equate cup b) (equate cup c) "
        "(list (eq c (current-desig b)) (eq c (newest-effective-designator cup))))",
        "'(t t)"},
-      // What is equated with a successor comes before it.
+      // A designator that is equated with a successor comes before it in the chain.
       {"(let ((b (an object (n 1))) (c (an object (n 2)))) (equate cup b) (equate c b) "
        "(list (eq b (current-desig c)) (desig-equal cup c)))",
        "'(t t)"},

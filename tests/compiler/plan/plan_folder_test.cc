@@ -1,4 +1,4 @@
-// Which files a plan's folder stands for, and in which order.
+// The files that a plan's folder stands for, and their order.
 
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -36,7 +36,7 @@ class PlanFolder {
     write("pick-place.asd",
           "(in-package :asdf-user)\n(asdf:defsystem pick-place\n" + options + ")");
   }
-  /// "b a c": what is loaded; or "CPL061: text" of the first error, a blank and what warned.
+  /// "b a c": the names loaded; or "CPL061: text" of the first error, a blank and the warnings.
   std::string loaded(std::vector<fs::path> more = {}) {
     base::SourceFiles files;
     base::DiagnosticSink sink;

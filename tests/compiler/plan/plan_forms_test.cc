@@ -255,7 +255,7 @@ TEST_CASE("forms: an action can be a function of the plan") {
   CHECK(unroll("(perform (an action (type wandering)))", {}, binding).codes() == Strings{"CPL010"});
   CHECK(unroll(fetch + "(perform (an action (type waving) (arm left)))", {}, binding).codes() ==
         Strings{"CPL007"});
-  // What calls itself without performing anything is found as in any other call.
+  // A function that calls itself without performing anything is reported as in any other call.
   CHECK(unroll("(defun fetch (?o ?a) (perform (an action (type fetching) (object ?o) (arm ?a))))"
                "(fetch 'box 'left)",
                {}, binding)

@@ -305,8 +305,8 @@ TEST_CASE("rules: candidates that fail later are tried in one order, and nothing
   };
   struct Case {
     std::string goal;
-    std::set<std::string> fit;      // objects that meet what the plan itself knows
-    std::set<std::string> needed;   // what has to hold besides Holding(left,?o)
+    std::set<std::string> fit;      // objects that meet the conditions known to the plan itself
+    std::set<std::string> needed;   // further conditions besides Holding(left,?o)
     std::set<std::string> blocked;  // objects that something else rules out
   };
   const std::vector<Case> cases = {
@@ -375,7 +375,7 @@ TEST_CASE("rules: bad ones are located and bounded") {
   CHECK(codes("(<- (action-grounding ?d (fetch 1)))").starts_with("`fetch`: unexpected argument"));
   CHECK(codes("(<- (action-grounding ?d (fetch ?d)) (lisp-fun nowhere ?d ?x))") ==
         "no form or function `nowhere`");
-  // What we cannot compute is no goal that fails.
+  // A goal that cannot be computed is an error, not a goal that fails.
   CHECK(codes("(<- (action-grounding ?d (fetch ?d)) (lisp-fun + 1 a ?x))") ==
         "`+`: argument 2 is a, not a number");
   CHECK(codes("(<- (action-grounding ?d (fetch ?d)) (lisp-fun carry 1 ?x))") ==

@@ -79,7 +79,7 @@ TEST_CASE("tasks: a rebound special is seen by what is called in the same task o
       "(let ((*where* *p2*)) (plain) (own) (setf *where* *p1*) (plain))(plain)";
   CHECK(with_prelude(text).events("++++") ==
         Strings{"Go(r2)", "Go(r1)", "Go(r1)", "Go(r1)", "DONE"});
-  // A handler runs where the failure was signalled: it sees what was bound there.
+  // A handler runs where the failure was signalled: it sees the bindings there.
   const auto handled = with_prelude(
       "(defparameter *where* *p1*)"
       "(with-failure-handling ((plan-failure (e) (perform (a motion (type going) (target "

@@ -1,4 +1,4 @@
-// Vectors, rotations and rigid motions, held against Eigen and against what must hold of them.
+// Vectors, rotations and rigid motions, compared with Eigen and with laws that must hold for them.
 #include "compiler/builtins/pose_math.h"
 
 #include <doctest/doctest.h>
@@ -40,7 +40,7 @@ Eigen::Isometry3d eigen(const RigidMotion& m) {
 }
 
 double apart(const Vector3& v, const Eigen::Vector3d& e) { return (eigen(v) - e).norm(); }
-/// Of the rotations; q and -q are the same.
+/// Distance of the two rotations; q and -q are the same rotation.
 double apart(const Quaternion& q, const Eigen::Quaterniond& e) {
   return (eigen(q).toRotationMatrix() - e.toRotationMatrix()).norm();
 }

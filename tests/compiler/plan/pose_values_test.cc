@@ -1,4 +1,4 @@
-// Poses and transforms as values of a plan: what is computed of them, and what only the robot
+// Poses and transforms as values of a plan: those that are computed, and those that only the robot
 // knows.
 #include <doctest/doctest.h>
 

@@ -10,8 +10,8 @@
 
 namespace parallax::compiler {
 
-/// What an expression is worth: (check EXPRESSION WANTED) goes to region 1 if they are equal.
-/// `defined` stands above.
+/// Checks the values of expressions: (check EXPRESSION WANTED) goes to region 1 if they are equal.
+/// `defined` is put before each expression.
 inline void check_values(const std::vector<std::pair<std::string, std::string>>& cases,
                          const std::string& defined = {}) {
   for (const auto& one : cases) {

@@ -1,4 +1,5 @@
-// What tells the world around the robot does nothing, and the page lists all of it.
+// Forms that describe the world around the robot do nothing, and docs/plan_language.md lists all of
+// them.
 #include "compiler/interpreter/world_forms.h"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,5 @@
-// Edits as changes of a text: what they leave alone, and that the formula says what was meant.
+// Edits as changes of a text: they leave the rest alone, and the new formula has the intended
+// meaning.
 
 #include "compiler/repair/edit_text.h"
 

@@ -1,5 +1,4 @@
-// Single mistakes of models and plans: which there are, and that each is a change of just that
-// place.
+// Single mistakes of models and plans: the list is complete, and each changes just its own place.
 
 #include <doctest/doctest.h>
 
@@ -71,7 +70,8 @@ TEST_CASE("mistakes of effects, preconditions, other axioms and facts") {
   const std::string pull = "Initiates(Pull(drawer),Open(drawer),time).";
   CHECK(all.lines_of(9) ==
         std::vector<std::string>{
-            // What adds `Open` says nothing new: it is excluded already.
+            // No mutation adds the condition `Open`: it would say nothing new, as the axiom
+            // excludes it.
             "axiom dropped: [drawer1,drawer2,time] HoldsAt(Open(drawer1),time) -> "
             "Releases(Swap(drawer1,drawer2),Open(drawer2),time).",
             "condition dropped: [drawer,time] !HoldsAt(Open(drawer),time) -> " + pull,

@@ -1,4 +1,4 @@
-// What messages say to do: spellings of other languages, missing sorts and constants, wrong names.
+// Advice in messages: spellings of other languages, missing sorts and constants, wrong names.
 
 #include <doctest/doctest.h>
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kCalculusWorld = "range time 0 2\nrange offset 1 1\nfluent F()\nevent E()\n";
 
-/// The number of axioms that are left, behind the codes of what was reported.
+/// The codes that were reported, then the number of axioms that are left.
 std::string left(const std::string& formulas) {
   const CheckedText checked(kCalculusWorld + formulas);
   std::string out;

@@ -1,4 +1,4 @@
-// Sorts, constants, symbols, ranges, options and what is said about them.
+// Sorts, constants, symbols, ranges, options and the messages about them.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Which formulas are effect and trajectory axioms, and what other mentions mean.
+// Formulas that are effect and trajectory axioms, and the meaning of other mentions of effects.
 
 #include <doctest/doctest.h>
 

@@ -45,7 +45,8 @@ std::string repeated(std::string_view piece, std::size_t count) {
 Answer answer(const std::function<std::string()>& text) {
   const auto child = ::fork();
   if (child == 0) {
-    // What takes for ever fails by its signal; how fast the rest is, a benchmark tells.
+    // An endless run is killed by a signal at the CPU limit; a benchmark measures the speed of the
+    // others.
     const ::rlimit cpu{60, 60};
     ::setrlimit(RLIMIT_CPU, &cpu);
     base::SourceFiles files;

@@ -1,4 +1,4 @@
-// The printed model says what the model says: reading it again gives the same text.
+// The printed model has the meaning of the model: reading it again gives the same text.
 
 #include "compiler/sema/model_text.h"
 
@@ -21,7 +21,7 @@ std::string printed(const CheckedText& text) {
   });
 }
 
-/// `loads` is put in front of what is printed: foundations are left out of it.
+/// `loads` is put in front of the printed text, which leaves foundations out.
 void check_round_trip(const std::string& text, const std::string& loads = "") {
   const auto once = printed(CheckedText(text));
   const CheckedText again(loads + once);

@@ -1,4 +1,4 @@
-// What messages say of names, and what is known of sorts.
+// Advice on misspelt names, and queries on sorts.
 
 #include "compiler/sema/name_advice.h"
 

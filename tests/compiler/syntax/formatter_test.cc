@@ -102,7 +102,7 @@ TEST_CASE("formatter: long formulas are broken at their connectives") {
   const std::string atom = "HoldsAt(VeryLongFluentName(agent1,object2),time)";
   CHECK(formatted("[agent1,object2,time] " + atom + " & " + atom + " -> " + atom + ".") ==
         "[agent1,object2,time]\n  " + atom + " &\n  " + atom + " ->\n    " + atom + ".\n");
-  // A negation stays with what it denies, and in front of a quantifier with that.
+  // A negation stays with its operand, and in front of a quantifier together with it.
   CHECK(formatted("[time] !" + atom + " & " + atom + " -> " + atom + ".") ==
         "[time]\n  !" + atom + " &\n  " + atom + " ->\n    " + atom + ".\n");
   CHECK(formatted("[time] !{agent1} " + atom + " & " + atom + ".") ==

@@ -1,4 +1,4 @@
-// What `load` finds, reads once, and refuses.
+// Files that `load` finds, reads once, and refuses.
 
 #include "compiler/syntax/loader.h"
 
@@ -184,7 +184,7 @@ TEST_CASE("load: syntax errors of all files are reported in one run") {
   folder.write("b.e", "P(.\n");
   const auto main = folder.write("a.e", "load b.e\nQ(.\n");
   const Loaded loaded({main});
-  CHECK(loaded.model);  // what could be read is there
+  CHECK(loaded.model);  // the readable part is there
   CHECK(loaded.codes() == Strings{"E1003", "E1003"});
 }
 

@@ -1,4 +1,4 @@
-// The table of binding strengths, row by row, and what follows from it.
+// The table of binding strengths, row by row, and its consequences.
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 namespace parallax::test {
 namespace {
 
-/// The tree of one formula, or the codes of what is wrong with it.
+/// The tree of one formula, or the codes of its errors.
 std::string shape(std::string text) {
   FrontEnd front;
   const auto file = front.add(std::move(text));

@@ -1,4 +1,4 @@
-// Several errors in one run, and what is still read after an error.
+// Several errors in one run, and the parts that are still read after an error.
 
 #include <doctest/doctest.h>
 

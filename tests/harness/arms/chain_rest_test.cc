@@ -1,6 +1,6 @@
 // Joints of an arm that is a chain rest as others do, also while its hand touches something, and
-// the motors of those that move are not bounded while they have torque to spare. What neither must
-// change is told by the same world with all joints solved and all motors bounded.
+// the motors of those that move are not bounded while they have torque to spare. Neither may change
+// the result: the same world with all joints solved and all motors bounded is the reference.
 
 #include <doctest/doctest.h>
 
@@ -18,7 +18,7 @@ constexpr Motion kSlow{0.2, 0.5, 0.001, 10.0};
 constexpr std::int64_t kAllJoints =
     15;  // lift, two arms of six joints, two fingers; not the springs
 
-/// Without a mass it is fixed.
+/// A world with a block. Without a mass it is fixed.
 WorldSpec with_block(const Eigen::Vector3d& size_m, const Eigen::Vector3d& p_W, double mass_kg) {
   WorldSpec spec = chain_warehouse();
   BodySpec block = box_body("block", size_m, p_W, mass_kg);

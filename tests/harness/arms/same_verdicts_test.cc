@@ -1,5 +1,5 @@
-// Arms of joints and their fast model, palms on gantries: what the kitchen and the warehouse are
-// about comes out alike. The bodies and grippers are the same; nothing else of the two is.
+// Arms of joints and their fast model, palms on gantries: kitchen and warehouse give the same
+// verdicts with both. The bodies and grippers are the same; nothing else of the two is.
 
 #include <doctest/doctest.h>
 
@@ -19,7 +19,8 @@ State left_with(const std::string& key, const std::string& value) {
   return {{"arm", std::string("left")}, {key, value}};
 }
 
-/// Both parts into the shelf, the way the plan has it. Which action failed first; empty: none.
+/// Brings both parts into the shelf as the plan does. Returns the action that failed first; empty:
+/// none.
 std::string restock(const std::string& scenario) {
   Robot robot(world_of(scenario));
   struct Part {

@@ -1,4 +1,5 @@
-// The table of calibration, smaller: does it tell criteria that keep their word from others?
+// A smaller calibration table: does it distinguish criteria that keep their error level from
+// others?
 
 #include <doctest/doctest.h>
 
@@ -62,7 +63,7 @@ TEST_CASE("clean-runs is as often wrong as it says, not less: the table can tell
   CHECK(std::abs(cell.share() - expected) < 4.0 * std::sqrt(expected * (1 - expected) / 4000));
 }
 
-/// Forgets what it should count, or stops too early.
+/// A faulty criterion: it ignores lost runs, or stops too early.
 class WrongCriterion final : public ConfidenceCriterion {
  public:
   WrongCriterion(const CriterionSpec& spec, bool forgets_losses)

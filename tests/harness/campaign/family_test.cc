@@ -1,4 +1,4 @@
-// What is claimed of several traces together, and the runs that it takes.
+// Claims about several traces together, and the runs that they take.
 
 #include "harness/confidence/clean_runs.h"
 #include "harness/report/report.h"
@@ -248,7 +248,8 @@ TEST_CASE("the same bytes for any number of jobs, and after any interruption") {
     CHECK(campaign_json(*same, false) == report);
     CHECK(slurp(other.journal()) == slurp(bench.journal()));
   }
-  // 40: within the first trace; 100: between what it needs alone and with others; 150: behind it.
+  // Ends of a run: 40 within the first trace; 100 between the runs that it needs alone and with
+  // others; 150 behind it.
   for (const int resets : {40, 100, 150}) {
     CAPTURE(resets);
     Bench other;

@@ -1,4 +1,4 @@
-// The journal as a file: what is appended, read back, continued and rewritten.
+// The journal as a file: lines appended, read back, continued and rewritten.
 
 #include "harness/campaign/journal.h"
 #include "tests/harness/campaign/two_regions.h"

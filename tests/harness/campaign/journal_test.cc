@@ -12,7 +12,7 @@ struct Outputs {
   friend bool operator==(const Outputs&, const Outputs&) = default;
 };
 
-/// Runs with the journal `before` in place and gives what the run folder holds afterwards.
+/// Runs with the journal `before` in place and returns the content of the run folder afterwards.
 Outputs continued_from(const std::string* before, std::int64_t jobs) {
   Bench bench;
   bench.script.drops = box_far;

@@ -1,4 +1,4 @@
-// Judgements of observations made by hand, and what is said of their causes.
+// Judgements of observations made by hand, and the causes they state.
 
 #include "harness/campaign/judge.h"
 
@@ -36,7 +36,7 @@ test::Table table() {
 }
 ModelFluents fluents() { return ModelFluents(*table()); }
 
-/// From r2 over the gripper to r1.
+/// A trace from r2 over the gripper to r1.
 CampaignTrace trace() {
   return test::named_trace(1, {}, {{"BoxIn(r2)", "Tired()"}, {"Held()"}, {"BoxIn(r1)"}},
                            {{"PickUp(box)"}, {"Place(r1)"}}, table());

@@ -1,4 +1,4 @@
-// Starts by a law through whole campaigns: what is claimed, counted, recorded and searched.
+// Starts drawn by a law through whole campaigns: claims, counts, records and searches.
 
 #include <cmath>
 #include <fstream>
@@ -50,7 +50,7 @@ TEST_CASE("rates are about the scenario's law: their intervals have its discrepa
   const auto& trace = result.traces[0];
   CHECK(trace.any.lower < p);
   CHECK(trace.any.upper > p);
-  CHECK(trace.any.upper < 0.3);  // what uniform starts would give
+  CHECK(trace.any.upper < 0.3);  // the value for uniform starts
   REQUIRE(trace.law.has_value());
   CHECK(trace.law->refused == 0);
   CHECK(rates_text(result).find("box.x normal with mean 1.5 and sd 0.2 within 1 to 2") !=

@@ -133,7 +133,7 @@ TEST_CASE("a simulator that crashes where it should fail earns no more false cla
   }
   CAPTURE(false_claims);
   CHECK(false_claims <= 2.0 * (1.0 - kConfidence) * kCampaigns);
-  CHECK(false_claims > 0);  // what is claimed wrongly by chance shows that the set-up can tell
+  CHECK(false_claims > 0);  // claims that are wrong by chance show that the set-up can tell
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ TEST_CASE("a child that answers is a simulator like any other") {
   CHECK(state.at("session") == state.at("pid"));
 }
 
-/// What came of an action that was recorded, or not.
+/// Result of one action, with the recorded motion if there is any.
 struct Moved {
   SimulatorInfo info;
   RecordedMotion motion;
@@ -142,7 +142,7 @@ TEST_CASE("poses of an external simulator: nonsense costs the motion, not the ou
     CAPTURE(mode);
     const auto out = moved(mode);
     CHECK(out.motion.fault == fault);
-    // What was right before it is kept.
+    // The frames before the fault are kept.
     MotionCursor cursor(out.motion.frames, {2, 1});
     while (cursor.next()) CHECK(cursor.time_s() < 0.75);
     CHECK(cursor.fault() == "");
@@ -318,7 +318,7 @@ TEST_CASE("a child inherits nothing but its three standard descriptors") {
   CHECK_FALSE(contains(reason, " " + std::to_string(leaked) + " "));
 }
 
-/// In a process of its own: starts a child that will never look at its input again, tells its
+/// Runs in a separate process: starts a child that will never look at its input again, reports its
 /// number, and is killed. None of its destructors run.
 [[noreturn]] void leave_child_behind(int report) {
   ChildProcess child({PARALLAX_SCRIPTED_WORKER, "act-hang"}, 0, nullptr);

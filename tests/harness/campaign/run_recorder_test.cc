@@ -191,7 +191,7 @@ TEST_CASE("recordings: the same bytes with any number of jobs, in a continued ru
   }
   continued.options.stop = nullptr;
   continued.options.progress = nullptr;
-  // What a killed writer leaves, and what is not ours.
+  // A temporary file that a killed writer leaves, and a file that is not ours.
   std::ofstream(continued.recordings() / "1.2.rec.77.tmp") << "half";
   std::ofstream(continued.recordings() / "notes.txt") << "mine";
   REQUIRE(continued.run());

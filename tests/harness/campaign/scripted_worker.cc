@@ -51,7 +51,7 @@ void misbehave(const std::string& mode, const std::string& method, int count) {
   }
 }
 
-/// What a simulator that has poses says of its bodies.
+/// The bodies that a simulator with poses reports.
 Json bodies() {
   return {{"bodies",
            {{{"name", "table"}, {"shapes", {{{"box", {1, 1, 0.1}}}}}},

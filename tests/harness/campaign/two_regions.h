@@ -1,6 +1,6 @@
 #pragma once
 
-// A world of two regions on a line, scripted: what the campaign tests run instead of physics.
+// A scripted world of two regions on a line, which the campaign tests run instead of physics.
 
 #include <doctest/doctest.h>
 #include <stdlib.h>
@@ -56,7 +56,8 @@ inline std::string slurp(const std::filesystem::path& path) {
   return out.str();
 }
 
-/// What was reported, in order of place, but for the code that a test brings about on the way.
+/// Codes of the reports in order of place, without the code `but_for` that the test provokes on the
+/// way.
 inline std::vector<std::string> codes(const base::DiagnosticSink& sink,
                                       std::string_view but_for = {}) {
   std::vector<std::string> out;
@@ -91,7 +92,7 @@ actions:
   Place(): {controller: placing, object: box}
 )";
 
-/// How the scripted world departs from the model. Predicates look at the start that was drawn.
+/// Departures of the scripted world from the model. Predicates look at the drawn start.
 struct Script {
   using OfStart = std::function<bool(const State&)>;
   static bool never(const State&) { return false; }
@@ -102,7 +103,7 @@ struct Script {
   OfStart wobbles = never;                  // the robot passes through r1 before it picks up
   std::chrono::milliseconds drop_delay{0};  // runs that drop the box take so much longer
   bool deterministic = true;
-  std::string determinism = "bitwise";  // what it says of itself, and of seeds
+  std::string determinism = "bitwise";  // its promises about itself and seeds
   bool seeds = true;
   double start_shift_m = 0.0;  // the robot starts so much off
   bool hides_box = false;      // observations lack box.x
@@ -118,7 +119,7 @@ inline double number(const State& state, const std::string& name) {
   return std::get<double>(state.at(name));
 }
 
-/// Where the scripted worker drops the box if a test says so.
+/// Starts at which the scripted worker drops the box if a test says so.
 inline bool box_far(const State& start) { return number(start, "box.x") > 1.9; }
 
 class ScriptedSimulator final : public Simulator {
@@ -191,11 +192,11 @@ class ScriptedSimulator final : public Simulator {
   double robot_m_ = 0.0, box_m_ = 0.0;
 };
 
-/// What the model leaves open, and what it says when it is asked.
+/// Openness of the model, and its answers to questions.
 struct Openness {
   bool initial_states = false, outcomes = false;
   bool is_stopped = false;  // the search ends before it is at its end, and decides nothing more
-  /// Of the last state that is asked about.
+  /// Judges the last state of a question.
   std::function<bool(const std::map<std::string, bool>&)> admits =
       [](const std::map<std::string, bool>&) { return false; };
   std::vector<std::size_t>* asked = nullptr;  // fluents by timepoint, of the last question
@@ -249,7 +250,7 @@ class ListFeed final : public TraceFeed {
   std::int64_t count_;
   Openness openness_;
   std::int64_t given_ = 0;
-  /// Not in order of the names, as models need not be.
+  /// A symbol table whose ids are not in order of the names, as models need not be.
   static Table table() {
     return table_of({"RobotIn(r1)", "RobotIn(r2)", "BoxIn(r1)", "BoxIn(r2)", "Holding()"});
   }

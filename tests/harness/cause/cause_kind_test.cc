@@ -1,4 +1,4 @@
-// Kinds of cause, told apart by recorded runs.
+// Kinds of cause, distinguished by recorded runs.
 
 #include "harness/cause/cause_kind.h"
 
@@ -24,7 +24,7 @@ TEST_CASE("each kind is known by its runs") {
   CHECK(kind(runs(1, [](int) { return true; })) == CauseKind::kUnknown);
   CHECK(kind(runs(10, [](int) { return true; })) == CauseKind::kAlways);
   CHECK(kind(runs(40, [](int i) { return i >= 30; })) == CauseKind::kRegion);
-  // That no border was found does not show that there is none.
+  // A search that finds no border does not show that there is none.
   CHECK(kind(runs(40, [](int i) { return i % 2 == 0; })) == CauseKind::kUnknown);
   CHECK(kind(runs(40, [](int i) { return i == 7; })) == CauseKind::kUnknown);
   // One start, several ends.
@@ -65,7 +65,7 @@ TEST_CASE("what vanishes with another seed or half the step puts the simulator i
         "It happened in 1 of 8 runs, and the simulator is in doubt. From the failing start once "
         "more: with other seeds of the simulator it happens in 5 of 5 runs, with half its step it "
         "happens in 0 of 5 runs.");
-  // What all runs say is stronger.
+  // A failure in all runs is stronger evidence.
   const auto always = runs(10, [](int) { return true; });
   CHECK(weighed(always, Persistence{5, 0}, std::nullopt).kind == CauseKind::kAlways);
   CHECK(weighed(few, std::nullopt, std::nullopt).kind == CauseKind::kUnknown);

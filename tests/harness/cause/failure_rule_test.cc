@@ -1,4 +1,4 @@
-// Trees of two borders over start parameters: the best of all, and none where there is none.
+// Trees of two borders over start parameters: the best of all, and no tree if there is no border.
 
 #include "harness/cause/failure_rule.h"
 
@@ -14,7 +14,7 @@ namespace {
 using harness::Border;
 using harness::CauseRun;
 
-/// From 0 to 1, the same on every machine.
+/// A number from 0 to 1, the same on every machine.
 double uniform(std::mt19937_64& bits) { return static_cast<double>(bits() >> 11U) * 0x1.0p-53; }
 
 std::vector<CauseRun> starts(std::mt19937_64& bits, std::size_t runs, std::size_t parameters) {

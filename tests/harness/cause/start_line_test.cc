@@ -1,4 +1,4 @@
-// Failing starts moved to the middle of their cell, and borders: against rules that are known.
+// Failing starts moved to the middle of their cell, and borders, against known rules.
 
 #include "harness/cause/start_line.h"
 
@@ -199,7 +199,7 @@ TEST_CASE("a line with several borders: each change that was seen is bracketed")
       CHECK(border.width() <= 1e-4);
       const auto low = std::min(border.fails, border.other);
       const auto high = std::max(border.fails, border.other);
-      // An odd number of borders between the ends, which is what it claims.
+      // An odd number of borders between the ends, as it claims.
       CHECK((changed(high) - changed(low)) % 2 == 1);
     }
     // As many as the values that were looked at tell.

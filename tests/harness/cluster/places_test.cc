@@ -1,4 +1,4 @@
-// Commands as a shell takes them apart, files of hosts, and who a worker says it is.
+// Commands as a shell takes them apart, files of hosts, and the name that a worker gives itself.
 
 #include <doctest/doctest.h>
 
@@ -32,7 +32,8 @@ TEST_CASE("words are those that a shell makes of the text") {
   };
   for (const auto& text : texts) {
     CAPTURE(text);
-    // What the shell itself hands to a program, each word ended by a byte that is in none.
+    // The words that the shell itself hands to a program, each ended by a byte that occurs in no
+    // word.
     auto line = text;
     std::replace(line.begin(), line.end(), '\n', ' ');
     const auto shell = test::run_process({"sh", "-c", "printf '%s\\001' " + line});

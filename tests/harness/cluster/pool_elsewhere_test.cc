@@ -1,5 +1,5 @@
-// The pool of workers with simulators that are somewhere else and get lost there: what is made
-// again, what is made twice, and what is lost.
+// The pool of workers with simulators on other machines, where they get lost: runs that are
+// repeated, runs that are made twice, and runs that are lost.
 
 #include <doctest/doctest.h>
 
@@ -15,10 +15,10 @@
 namespace parallax::harness {
 namespace {
 
-/// What the workers of one test share: which of them fail at what, and what was asked of them.
+/// State that the workers of one test share: which of them fail and when, and the assignments.
 struct Place {
   bool seeds = true;
-  /// Of a sample, the how-manieth assignment, from 1: is its worker lost at it?
+  /// Given a sample and the number of its assignment, from 1: is the worker lost at it?
   std::function<bool(std::int64_t, std::int64_t)> goes = [](auto, auto) { return false; };
   /// Likewise: it hangs until it is interrupted, or released.
   std::function<bool(std::int64_t, std::int64_t)> hangs = [](auto, auto) { return false; };
@@ -107,7 +107,7 @@ class Squares final : public SampleMaker {
 
 struct Ran {
   std::vector<SampleRecord> records;     // in order
-  std::map<std::int64_t, int> finished;  // by sample: how often the pool told
+  std::map<std::int64_t, int> finished;  // by sample: number of reports by the pool
   std::map<std::int64_t, std::int64_t> assignments;
 };
 
@@ -152,7 +152,7 @@ TEST_CASE(
     "where the same seed gives the same run, a lost one is made elsewhere as if it were not") {
   for (const std::int64_t jobs : {1, 3}) {
     Place place;
-    // Of the 40 a third is lost at first, one nine times.
+    // About a third of the 40 samples lose their first worker, and sample 7 loses nine.
     place.goes = [](std::int64_t sample, std::int64_t assignment) {
       return (sample % 3 == 0 && assignment == 1) || (sample == 7 && assignment <= 9);
     };

@@ -214,7 +214,7 @@ double stop_share_of_losses(const CriterionSpec& spec, double p, std::uint64_t l
       const auto [known, is_new] = stops.try_emplace({tally.runs(), tally.lost()}, false);
       if (is_new) known->second = criterion->decide(tally).stop;
       if (!known->second) continue;
-      // What it then says is what it was asked to exclude, at its own level.
+      // The bound that is then stated is at most the rate to be excluded, at the level asked for.
       CHECK(stated_bound(tally, spec).epsilon <= spec.epsilon);
       ++stopped;
       break;

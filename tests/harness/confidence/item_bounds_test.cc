@@ -1,5 +1,6 @@
-// Runs that go on until things were shown: bounds of what was not shown, and rates, in worlds whose
-// probabilities are known, under rules of stopping that spoil what does not allow for them.
+// Runs that go on until all items were shown: bounds for items that were not shown, and rates, in
+// worlds with known probabilities, under stopping rules that spoil bounds which do not allow for
+// them.
 #include "harness/confidence/item_bounds.h"
 
 #include <doctest/doctest.h>
@@ -43,7 +44,7 @@ TEST_CASE("item bounds: what one of many never showed is bounded for all of them
         if (rng.uniform(draw++) < kEpsilon) shown[i] = true;
       }
       bounds.add_run();
-      // Each by itself, as if it were the only one.
+      // Each item by itself, as if it were the only one.
       if (bounds.runs() == naive_needed && left()) ++naive_wrong;
     }
     if (!left()) continue;
@@ -51,8 +52,8 @@ TEST_CASE("item bounds: what one of many never showed is bounded for all of them
     ++wrong;
   }
   CHECK(wrong < kCampaigns * too_many(1.0 - kConfidence));
-  CHECK(wrong > 0);  // it is not merely timid: 1 % is what it may take
-  // What the bound of one would have claimed of all: ten times as often wrong.
+  CHECK(wrong > 0);  // it is not merely conservative: it may err in 1 %
+  // The bound for a single item, claimed of all ten: wrong ten times as often.
   CHECK(naive_wrong > kCampaigns * 0.07);
 }
 
@@ -121,7 +122,7 @@ TEST_CASE("item bounds: one thing has the bound of clean runs; more of them need
 }
 
 TEST_CASE("a rate in a number of runs that was fixed is none of when the runs end") {
-  // The runs go on until what is counted has come, but are twenty at least.
+  // The runs go on until enough is counted, but are twenty at least.
   constexpr double kRate = 0.02;
   constexpr int kPlanned = 20;
   double fixed_sum = 0.0, naive_sum = 0.0;

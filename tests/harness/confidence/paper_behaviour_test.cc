@@ -1,4 +1,4 @@
-// What the paper's rule does in simple worlds: documented behaviour, wanted or not.
+// Behaviour of the paper's rule in simple worlds: documented, whether wanted or not.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What a fixed number of runs says of a rate, and of two: held against sums over all outcomes.
+// Evidence of a fixed number of runs about one rate or two, compared with sums over all outcomes.
 
 #include "harness/confidence/rate_evidence.h"
 
@@ -157,7 +157,7 @@ TEST_CASE("both statements about two rates are false no more often than is said"
 }
 
 TEST_CASE("runs that end as soon as they tell are taken for a false answer as seldom as is said") {
-  // All ways through 150 runs at once: the probability of each count that has not told yet.
+  // All ways through 150 runs at once: the probability of each count that has not decided yet.
   constexpr std::int64_t kRuns = 150;
   for (const auto& [lower, upper] : {std::pair{0.0, 0.1}, {0.2, 1.0}, {0.3, 0.7}}) {
     const RateClaim claim{lower, upper, 0.9};

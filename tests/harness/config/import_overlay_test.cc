@@ -1,4 +1,4 @@
-// What a scenario lays over an imported world, and stops that such a world cannot have.
+// Keys of a scenario that override an imported world, and stops that such a world cannot have.
 
 #include <algorithm>
 #include <memory>

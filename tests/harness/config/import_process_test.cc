@@ -1,4 +1,4 @@
-// What reads the files of strangers in a process of its own, and what comes back of it.
+// The separate process that reads files of unknown origin, and its answers.
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -131,7 +131,7 @@ TEST_CASE("what comes back of the process that reads is taken over whole, or not
     CHECK_FALSE(model_of(bytes.substr(0, length)).has_value());
   }
   CHECK_FALSE(model_of(bytes + "x").has_value());
-  // Whatever a byte becomes, what is read names nothing that is not there.
+  // Whatever a byte becomes, the model that is read names no body that is not there.
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     for (const int value : {0, 1, 2, 127, 255}) {
       std::string other = bytes;

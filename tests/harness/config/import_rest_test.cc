@@ -1,5 +1,5 @@
-// What a description has that is not taken over is listed, wherever it stands; what is taken over
-// has an effect.
+// Every part of a description that is not taken over is listed, wherever it stands; every part that
+// is taken over has an effect.
 
 #include <array>
 #include <string>

@@ -1,5 +1,5 @@
-// What a scenario says that can never be meant: degrees, variables of another kind, and stops that
-// a controller leads away from.
+// Statements in a scenario that can never be meant: degrees, variables of another kind, and stops
+// that a controller leads away from.
 
 #include <algorithm>
 #include <string>
@@ -16,7 +16,7 @@ const std::vector<std::string> kFluents = {"BoxIn(r1)", "BoxIn(r2)", "Holding()"
                                            "RobotIn(r2)"};
 const std::vector<std::string> kEvents = {"Go(r1)", "Go(r2)", "PickUp()", "Place(r1)"};
 
-/// What checking the scenario says, the first time it says something.
+/// Reports of loading the scenario and checking it against the model.
 std::vector<std::string> reports_of(const std::string& text) {
   Workspace workspace;
   const auto scenario = workspace.load(text);
@@ -203,7 +203,7 @@ TEST_CASE("names with placeholders are filled in before stops are compared") {
   CHECK(faults("{0}.q", low, high, {}) == 1);
   CHECK(faults("{0}.q", high, low, {}) == 0);
   CHECK(faults("reach.q", low, high, {}) == 0);
-  // What the slider carries begins at 0.5 m.
+  // The slider carries the base, which begins at 0.5 m.
   CHECK(faults("base.x", {-0.51, -0.4}, {2.9, 3.01}, {}) == 1);
   CHECK(faults("base.x", {2.9, 3.01}, {-0.51, -0.4}, {}) == 0);
   // The plan's word counts before that of the action.

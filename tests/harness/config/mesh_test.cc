@@ -1,4 +1,4 @@
-// Meshes from their files to hulls in a world, and files that are none.
+// Meshes from their files to hulls in a world, and files that are not meshes.
 
 #include "harness/import/mesh.h"
 

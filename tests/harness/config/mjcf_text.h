@@ -22,7 +22,7 @@ inline std::string bodies_with(const std::string& inside) {
   return "<mujoco>\n<worldbody>\n" + inside + "\n</worldbody>\n</mujoco>";
 }
 
-/// With these sections from its second line on.
+/// An MJCF file with these sections from its second line on.
 inline std::string file_with(const std::string& sections) {
   return "<mujoco>\n" + sections + "\n</mujoco>";
 }

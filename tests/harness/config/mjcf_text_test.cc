@@ -1,4 +1,5 @@
-// What texts in MJCF come to: what is left out is said, what cannot be is refused at its place.
+// Texts in MJCF: parts that are left out are reported, and impossible ones are refused at their
+// place.
 
 #include "tests/harness/config/mjcf_text.h"
 

@@ -1,4 +1,4 @@
-// Worlds in MJCF against what MuJoCo itself makes of the same files.
+// Worlds in MJCF, compared with MuJoCo's own reading of the same files.
 
 #include <mujoco/mujoco.h>
 

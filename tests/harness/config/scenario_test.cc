@@ -188,7 +188,8 @@ TEST_CASE("the scenario is held against the ground model") {
                                     {"Pickup()", "Go(r1,r2)", "Go(r2,r1)"}, sink)
                     .has_value());
     const auto reports = workspace.reports();
-    // Each symbol once: fluent, region, event, arity; and what nothing answers to as warnings.
+    // Each symbol once: fluent, region, event, arity; and symbols that nothing answers to as
+    // warnings.
     REQUIRE(reports.size() == 8);
     CHECK(reports[0].find("E5303 at 10:1: fluent `BoxAt`") == 0);
     CHECK(reports[1].find("W5127 at 11:3: the model has no fluent `RobotIn`") == 0);
@@ -214,7 +215,7 @@ TEST_CASE("variables that depend on a fluent's arguments must be observed, each 
   SUBCASE("by the built-in simulator") {
     CHECK_FALSE(check_against_model(*scenario, fluents, events, workspace.sink).has_value());
     const auto reports = workspace.reports();
-    REQUIRE(reports.size() == 1);  // of several fluents of an entry the first
+    REQUIRE(reports.size() == 1);  // only the first of several fluents of an entry
     CHECK(reports[0] ==
           "E5115 at 13:4: the simulator has no variable `box.hold` fix: replace "
           "`box.hold` with `box.held`");

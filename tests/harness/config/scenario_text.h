@@ -54,7 +54,7 @@ actions:
 sampling: {inset_m: 0.001, variables: {box.y: 0.0, box.yaw: [-0.1, 0.1]}}
 )yaml";
 
-/// A folder with the files that the scenario names, and what loading one of them gives.
+/// A folder with the files that the scenario names, and the result of loading one of them.
 class Workspace {
  public:
   Workspace() {

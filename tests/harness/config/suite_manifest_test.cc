@@ -5,7 +5,7 @@
 namespace parallax::harness::test {
 namespace {
 
-/// A folder with a model and what loading a manifest in it gives.
+/// A folder with a model, and the result of loading a manifest in it.
 class ManifestWorkspace : public Workspace {
  public:
   std::optional<SuiteManifest> load_suite(const std::string& text) {

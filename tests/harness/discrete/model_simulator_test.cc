@@ -63,7 +63,8 @@ TEST_CASE("an event that the model forbids fails, and only time passes") {
   CHECK(kick.status == SimStatus::kFailed);
   CHECK(kick.reason == "not-possible: `world.e` has no next state in which `Kick()` has happened");
   CHECK(holding(lamp).empty());
-  // What goes on by itself goes on: a counter that every timepoint moves.
+  // Events that happen by themselves go on after a refused action: a counter that every timepoint
+  // moves.
   ModelSimulator clock(
       world("fluent Late()\nfluent Locked()\nevent Tick()\nevent Open()\n"
             "[time] !HoldsAt(Late(),time) -> Happens(Tick(),time).\n"
@@ -135,7 +136,7 @@ TEST_CASE("starts: what is not named is drawn among the initial states that fit"
   CHECK(simulator.reset({{"Dark()", 0.5}}, 1).status == SimStatus::kUnsupported);
   REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
   CHECK(simulator.act("Fly()", {}, 1).status == SimStatus::kUnsupported);
-  // More than can be listed is said, not drawn from a part.
+  // More states than can be listed are reported, not drawn from a part.
   ModelSimulator small(rooms, nullptr, {.states = 2});
   const auto many = small.reset({}, 1);
   CHECK(many.status == SimStatus::kUnsupported);
@@ -194,7 +195,8 @@ TEST_CASE("the world comes to no state that its model has in no execution") {
   CHECK(door.reset({{"Door()", false}}, 1).status == SimStatus::kInvalidStart);
 }
 
-/// The states of every play of a random model are those of a trace in which what succeeded happens.
+/// The states of every play of a random model are those of a trace in which the successful events
+/// happen.
 TEST_CASE("plays of random models are traces of them") {
   int plays = 0;
   int whole = 0;

@@ -1,4 +1,4 @@
-// What is said of doors that no hand can open, at their place in the file.
+// Errors about doors that no hand can open, at their place in the file.
 
 #include <doctest/doctest.h>
 
@@ -20,7 +20,7 @@ std::vector<std::string> reports_of(const std::string& world,
   return workspace.reports();
 }
 
-/// What follows the place, of the only report.
+/// The only report. There must be exactly one.
 std::string only_report(const std::string& world, const std::string& actions = " {}\n") {
   const auto reports = reports_of(world, actions);
   for (const std::string& report : reports) CAPTURE(report);
@@ -105,7 +105,7 @@ TEST_CASE("a tolerance of half the way between the stops, or more, is refused wh
                       " rad, half of the 1.6 rad between the stops of `hinge` or more") !=
           std::string::npos);
   }
-  // What is not given counts as well.
+  // The default of `stop_tolerance_rad` is checked as well.
   CHECK(only_report(replaced(kDoorWorld, "range_rad: [0, 1.6]", "range_rad: [0, 0.09]"), door(""))
             .find("actions/Open/joint: is `hinge`, whose stops are 0.09 rad apart: the 0.05 rad of "
                   "`stop_tolerance_rad` are half of that or more") != std::string::npos);

@@ -16,7 +16,7 @@
 namespace parallax::harness::test {
 namespace {
 
-/// To its stop, where it stays, and to the other.
+/// Moves the door to its stop, where it stays, and to the other.
 void open_and_close(const WorldSpec& spec) {
   Robot robot(spec, beside());
   const Outcome opened = open(robot);

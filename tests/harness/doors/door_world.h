@@ -74,7 +74,7 @@ inline WorldSpec door_world(const std::string& world = kDoorWorld) {
   return scenario->world;
 }
 
-/// Beside the arc of the door, turned to its hinge.
+/// A start beside the arc of the door, turned to its hinge.
 inline State beside(State more = {}) {
   more.insert({{"robot.x", -1.04}, {"robot.y", 0.21}, {"robot.yaw", -0.656}});
   return more;

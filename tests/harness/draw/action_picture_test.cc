@@ -46,7 +46,7 @@ std::set<std::string> marks_of(const std::string& svg) {
   return kinds;
 }
 
-/// Where the corners of a box begin and end along a direction.
+/// The interval of a box's corners along a direction.
 std::pair<double, double> ends_along(const Probe& box, const Eigen::Vector3d& direction) {
   std::pair<double, double> out{1e9, -1e9};
   for (int corner = 0; corner < 8; ++corner) {
@@ -87,7 +87,7 @@ TEST_CASE("a refused drive shows the straight way, its goal and the body that is
   CHECK(moved.cross(action.goal->to_W - action.goal->from_W).norm() < 1e-6);
   CHECK(marks_of(watched.svg()) == Kinds{"ghost", "goal", "measure", "met"});
 
-  // What is missing to pass it: corners of both, seen along the way.
+  // The missing width to pass the obstacle, from the corners of both, seen along the way.
   const Eigen::Vector3d way = action.goal->to_W - action.goal->from_W;
   const Eigen::Vector3d across = way.cross(Eigen::Vector3d::UnitZ()).normalized();
   double missing_m = 0.0;

@@ -6,7 +6,7 @@
 namespace parallax::harness {
 namespace {
 
-/// Where the text of an SVG fragment stands, with the width that a sans-serif font has at most.
+/// Place of the text of an SVG fragment, with the largest width that a sans-serif font gives it.
 Rectangle box_of(const std::string& svg) {
   const auto root = test::parse_xml("<g>" + svg + "</g>");
   const auto* text = root.all("text").at(0);

@@ -1,4 +1,4 @@
-// What pictures take from a recording, held against the simulator that left it.
+// Data that pictures take from a recording, compared with the simulator that made it.
 
 #include "harness/draw/recorded_actions.h"
 
@@ -39,7 +39,7 @@ double apart_m(const Scene& a, const Scene& b) {
   return out;
 }
 
-/// At the time of every moment that was seen, everything was recorded there.
+/// Checks that at the time of every moment that was seen, everything in it was recorded.
 void check_ways(const std::vector<SceneMoment>& seen, const std::vector<SceneMoment>& recorded) {
   REQUIRE_FALSE(recorded.empty());
   CHECK(recorded.size() <= seen.size());

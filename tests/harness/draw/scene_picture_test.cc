@@ -1,4 +1,4 @@
-// Pictures of made-up worlds: what is shown of them, and that nothing in a name gets out of it.
+// Pictures of made-up worlds: their contents, and that names are escaped.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Where boxes touch, held against geometry that knows nothing of faces, edges and clipping.
+// Contact points of boxes, compared with geometry that knows nothing of faces, edges and clipping.
 
 #include "harness/engine/box_contacts.h"
 
@@ -107,7 +107,7 @@ TEST_CASE("boxes that overlap touch as deep as the least shift that parts them, 
     ++touching;
     REQUIRE(found.count > 0);
     CHECK(found.normal_W.norm() == doctest::Approx(1.0));
-    // Within a tenth; what the search finds is a little more than the least.
+    // Within a tenth; the search finds a little more than the least depth.
     CHECK(deepest_of(found) > 0.88 * least_m);
     // A face may be taken that is off by a fiftieth.
     CHECK(overlap_m(a, b, found.normal_W) < 1.11 * least_m + 0.02 * (a.half_m + b.half_m).norm());

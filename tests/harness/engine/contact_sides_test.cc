@@ -1,5 +1,5 @@
-// Contacts that are left out between two sides must not carry anything: what stands, tips and
-// slides does so with all of them as well.
+// Contacts that are left out between two sides must not carry anything: bodies stand, tip and slide
+// just as with all contacts.
 
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@
 namespace parallax::harness {
 namespace {
 
-/// A world of at most so many contacts a side, at its start.
+/// A world with at most `per_side` contacts a side, at its start.
 struct Scene {
   Scene(WorldSpec spec, std::optional<std::int64_t> per_side) {
     spec.solver.max_contacts_per_pair = 4;
@@ -129,7 +129,7 @@ TEST_CASE("friction is that of the weight, however many contacts carry it") {
       if (share < 1.0) {
         CHECK(scene.at("sledge").x() < 0.002);
       } else {
-        // What is left of the push moves sledge and pusher.
+        // The part of the push beyond friction accelerates sledge and pusher.
         const double way_m = 0.5 * (share - 1.0) * needed_n / 3.0;
         CHECK(scene.at("sledge").x() == doctest::Approx(way_m).epsilon(0.15));
       }

@@ -1,4 +1,4 @@
-// Convex hulls held against boxes of the same form, closed forms and geometry.
+// Convex hulls compared with boxes of the same form, closed forms and geometry.
 
 #include <doctest/doctest.h>
 
@@ -156,7 +156,7 @@ TEST_CASE(
   }
 }
 
-/// A prism of so many sides, as the hull of a mug is one.
+/// A prism with that many sides, as the hull of a mug is one.
 BodyShape prism(std::uint32_t sides, double radius_m, double height_m) {
   std::vector<Eigen::Vector3d> corners;
   std::vector<HullFace> faces;

@@ -1,4 +1,4 @@
-// The machines of docs/physics.md in every engine: what they are off at one step, and at a quarter.
+// The machines of docs/physics.md in every engine: their error at one step, and at a quarter.
 
 #include "tools/bench/engines/machines.h"
 
@@ -21,7 +21,7 @@ TEST_CASE("machines move as mechanics says in every engine, the closer the short
       CAPTURE(machine.name);
       const double error = machine.error(engine, 0.002), at_a_quarter = machine.error(engine, 5e-4);
       CHECK(error < machine.bound);
-      // Of first order it is a quarter.
+      // A first-order integrator has a quarter of the error at a quarter of the step.
       CHECK((at_a_quarter < 0.5 * error || at_a_quarter < machine.none));
     }
   }

@@ -282,7 +282,7 @@ TEST_CASE("a sphere falls as far as free fall says") {
   }
 }
 
-/// How far something has come down a slope of 0.3 rad after a second from rest.
+/// Distance that a body comes down a slope of 0.3 rad in a second from rest.
 double way_down(EngineKind engine, ShapeForm form, double friction) {
   const double slope = 0.3, radius_m = 0.1;
   BodySpec ramp = box_body("ramp", {10.0, 4.0, 0.2}, {0.0, 0.0, 3.0});

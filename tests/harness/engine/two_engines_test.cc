@@ -1,4 +1,5 @@
-// What both engines have to say alike of a world that stands still, and what is MuJoCo's alone.
+// Properties of a world at rest on which both engines must agree, and properties that only MuJoCo
+// has.
 
 #include <doctest/doctest.h>
 

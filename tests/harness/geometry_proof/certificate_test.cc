@@ -187,8 +187,9 @@ nlohmann::ordered_json mutated(const nlohmann::ordered_json& document,
   return out;
 }
 
-/// What a certificate claims, sampled: starts of boxes with a verdict, as the second evaluation of
-/// the true assumptions decides them, and texts and numbers as they follow from the world.
+/// Returns the first claim of the certificate that is found to be false, or an empty text. Samples
+/// starts of boxes with a verdict and decides them by the second evaluation of the true
+/// assumptions; texts and numbers must follow from the world.
 std::string false_claim(const Certificate& said, const Made& made, test::Random& random) {
   for (const auto& action : said.actions) {
     const auto& real = made.certificate.actions.at(action.number);

@@ -1,5 +1,5 @@
-// What proofs about the hand rest on: how nearly its parts stand as they are told, and how exactly
-// a camera without errors sees.
+// Premises of proofs about the hand: how closely its parts reach their commanded pose, and how
+// exactly a camera without errors sees.
 
 #include <doctest/doctest.h>
 
@@ -95,7 +95,7 @@ TEST_CASE("what an exact camera sees lies no farther from the body than is said"
                                     kitchen.number("spoon1.seen.y") - kitchen.number("spoon1.y"));
     CAPTURE(n);
     CHECK(level <= error.level_m);
-    // What lies on the counter is seen to lie there.
+    // A body on the counter is seen to lie there.
     CHECK(std::abs(kitchen.number("spoon1.seen.bottom") - 0.85) <= error.height_m + 5e-4);
     ++(error.level_m < 1e-4 ? exact : bounded);
   }

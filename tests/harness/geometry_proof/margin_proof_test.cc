@@ -1,4 +1,4 @@
-// Tests of controllers that are a distance or an angle, held against the controllers themselves.
+// Tests of controllers that are a distance or an angle, compared with the controllers themselves.
 
 #include <doctest/doctest.h>
 
@@ -63,7 +63,8 @@ Tally hold_against_controller(const WorldSpec& spec, const StartCuboid& region,
       got_there = ok(simulator.act(calls[i].controller, calls[i].arguments, 60.0));
     }
     if (!got_there) continue;
-    // What is refused at once needs no time: else it is at work when the time is over.
+    // A refusal at once needs no simulated time; otherwise the action must still be at work when
+    // the time limit is zero.
     const ProofAction& action = calls.back();
     const Outcome outcome =
         simulator.act(action.controller, action.arguments, test.test.is_at_once ? 0.0 : 60.0);

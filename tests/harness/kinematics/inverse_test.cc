@@ -17,7 +17,7 @@ bool within_stops(const SerialChain& chain, const JointVector& q) {
   return true;
 }
 
-/// What the result says of itself is so, whether it got there or not.
+/// Checks that the result describes itself correctly, whether it reached the goal or not.
 void check_honest(const SerialChain& chain, const Eigen::Isometry3d& goal,
                   const InverseResult& result) {
   const auto error = pose_error(chain.tool(result.q), goal);

@@ -7,7 +7,7 @@
 namespace parallax::harness {
 namespace {
 
-/// How far the milk is believed to be from where it stands, in the plane [m].
+/// Distance in the plane between the believed and the true place of the milk [m].
 double off_m(Kitchen& kitchen) {
   return std::hypot(kitchen.number("milk1.seen.x") - kitchen.number("milk1.x"),
                     kitchen.number("milk1.seen.y") - kitchen.number("milk1.y"));

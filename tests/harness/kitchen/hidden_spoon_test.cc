@@ -89,7 +89,7 @@ TEST_CASE("what is seen from outside the reach is not taken, and is with a longe
   CHECK(fetch(kitchen_world(), 0.66, 0.0, -0.05, 0.1).taken);
 }
 
-/// How many of the corners of a spoon's start region in the middle drawer fail, from two corners of
+/// Number of corners of a spoon's start region in the middle drawer that fail, from two corners of
 /// the robot's.
 int failures(const std::array<double, 2>& x_d_m, const std::array<double, 2>& y_d_m) {
   int failed = 0;

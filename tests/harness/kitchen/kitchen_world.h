@@ -12,7 +12,7 @@ namespace parallax::harness {
 /// The world of scenarios/kitchen, as the scenario files say.
 const WorldSpec& kitchen_world();
 
-/// Short names for what the plans do. Every action is allowed 60 s.
+/// Short names for the actions of the plans. Every action is allowed 60 s.
 class Kitchen {
  public:
   explicit Kitchen(const WorldSpec& spec) : simulator_(spec) {}

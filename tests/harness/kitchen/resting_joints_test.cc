@@ -7,8 +7,8 @@
 #include "tests/harness/robot/servo_robot.h"
 #include "tests/harness/world/hand_made.h"
 
-// Joints that are at rest are not solved. What that must not change is told by a world of which all
-// joints are solved, and by Newton.
+// Joints that are at rest are not solved. This must not change the result: references are a world
+// of which all joints are solved, and Newton.
 
 namespace parallax::harness {
 namespace {

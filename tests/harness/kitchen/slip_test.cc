@@ -8,7 +8,7 @@
 namespace parallax::harness {
 namespace {
 
-/// What becomes of a carton of this mass between the counter and the table.
+/// Fate of a carton between the counter and the table.
 enum class Fate { kNotLifted, kLostOnTheWay, kDelivered };
 
 Fate carry(const WorldSpec& spec, double mass_kg, double speed_m_s = 0.6) {

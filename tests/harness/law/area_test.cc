@@ -39,7 +39,7 @@ std::vector<PlanePoint> cut(const std::vector<PlanePoint>& corners, std::size_t 
   return out;
 }
 
-/// Uniform draws are counted on a grid over the bounds and held against the cells' sizes.
+/// Counts uniform draws on a grid over the bounds and compares them with the cells' sizes.
 void check_uniform(const Area& area,
                    const std::function<double(const PlanePoint&, const PlanePoint&)>& size_in,
                    std::uint64_t seed) {
@@ -86,7 +86,7 @@ void check_uniform(const Area& area,
         6.0 * error + 2e-3);
 }
 
-/// By counting on a fine grid what a test of its own finds inside.
+/// Area inside a rectangle, by counting the points of a fine grid that `inside` accepts.
 std::function<double(const PlanePoint&, const PlanePoint&)> counted(
     const std::function<bool(double, double)>& inside) {
   return [=](const PlanePoint& lower, const PlanePoint& upper) {

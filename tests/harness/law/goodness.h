@@ -23,8 +23,8 @@ inline double kolmogorov(std::vector<double> values, const std::function<double(
 }
 inline constexpr double kKolmogorovLimit = 2.7;
 
-/// How many standard deviations Pearson's statistic is beyond its mean, by Wilson and Hilferty's
-/// cube root. Above 5 once in three million times.
+/// Standard deviations of Pearson's statistic beyond its mean, by Wilson and Hilferty's cube root.
+/// Above 5 once in three million times.
 inline double chi_square_excess(const std::vector<std::int64_t>& counts,
                                 const std::vector<double>& shares) {
   std::int64_t n = 0;

@@ -82,7 +82,7 @@ TEST_CASE("without conditions every variable that stays uniform is drawn as with
 }
 
 TEST_CASE("a law is conditioned on the cell, and on what is required of several values") {
-  // Of two uniform values given that one is above the other, the upper one has P(x) = x^2.
+  // The larger of two uniform values, given their order, has P(x) = x^2.
   SamplingLaw law;
   require(law, "a < b");
   const auto pair = sampler_of({{{"a", {0, 1}}, {"b", {0, 1}}}}, law);
@@ -99,7 +99,7 @@ TEST_CASE("a law is conditioned on the cell, and on what is required of several 
   require(bell, "a > 1");
   const auto sampler = sampler_of({{{"a", {-9, 9}}}}, bell);
   CHECK(test::kolmogorov(values(sampler, "a"), tail) < test::kKolmogorovLimit);
-  // Counts of what is refused are those of the law: P(a <= 1) = 0.8413.
+  // The counts of refused draws are those of the law: P(a <= 1) = 0.8413.
   std::vector<std::int64_t> refusals(1);
   std::int64_t refused = 0;
   for (std::uint64_t i = 0; i < kLawDraws; ++i) {

@@ -22,7 +22,7 @@ struct Read {
   Status last = Status::kLine;
 };
 
-/// What comes through a pipe that is written in pieces.
+/// Lines read from a pipe that is written in pieces.
 Read read_all(const std::vector<std::string>& pieces, std::size_t max_line) {
   base::Pipe pipe;
   REQUIRE(pipe.valid());

@@ -60,7 +60,7 @@ TEST_CASE("a line of JSON: an event with its outcome, an action that is begun, a
   CHECK(f.entry.events->empty());
   CHECK(f.json(R"j({"t": 2, "started": "Go(a)"})j") == "");
   CHECK(f.entry.started == "Go(a)");
-  // What was not reported is not there any more.
+  // A value that was not reported again is gone.
   CHECK(f.json(R"j({"t": 3, "state": {}})j") == "");
   CHECK_FALSE(f.value("door.q"));
 }

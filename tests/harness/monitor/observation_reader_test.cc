@@ -113,7 +113,7 @@ TEST_CASE("where all is reported it reads what the mapping reads, and where less
     CHECK(missing.empty());
     CHECK(seen.outside == mapping.outside(fluents, state));
     outside += seen.outside.size();
-    // What is not reported is not known, and nothing else changes.
+    // A fluent whose value is not reported is unknown, and nothing else changes.
     for (auto& value : values) {
       if (random() % 3 == 0) value.reset();
     }

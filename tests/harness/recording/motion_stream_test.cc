@@ -132,7 +132,7 @@ TEST_CASE("motion: what is taken at once goes in a line of the protocol") {
   CHECK(writer.fault() == "more than 512 KiB of frames in one action");
   const auto taken = writer.take();
   CHECK(taken.size() < kMaxMotionAtOnce + 200 * 30);
-  // What was left out stays left out: later frames would start from poses that nobody knows.
+  // Frames after an omitted one are omitted too: they would start from unknown poses.
   writer.add(100.0, poses, {});
   CHECK(writer.take().empty());
   MotionCursor cursor(taken, {200, 0});

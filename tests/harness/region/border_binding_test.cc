@@ -1,4 +1,4 @@
-// Fluents that say on which side of a border something began.
+// Fluents for the side of a border on which a value was at the start.
 
 #include <doctest/doctest.h>
 
@@ -49,7 +49,7 @@ TEST_CASE("a value on the border is not above it") {
   CHECK(*map.holds(ground_fluent("Light()"), start));
   CHECK(*map.holds(ground_fluent("Far(a)"), {{"a.x", 1.7501}}));
   CHECK_FALSE(*map.holds(ground_fluent("Light()"), {{"b.mass", 0.51}}));
-  // Of what it is not about it never holds, whatever is seen there.
+  // The fluent never holds of a body that the binding is not about, whatever is observed.
   CHECK_FALSE(*map.holds(ground_fluent("Far(b)"), start));
 }
 

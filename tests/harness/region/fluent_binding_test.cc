@@ -1,4 +1,4 @@
-// What each kind of condition answers, asked directly.
+// Answers of each kind of condition, asked directly.
 
 #include "harness/region/fluent_binding.h"
 

@@ -151,7 +151,7 @@ TEST_CASE("start: a flag that is drawn is set to what its fluents ask for") {
   CHECK(cuboid->dimensions[0].variable == "lit(a)");
   CHECK(cuboid->dimensions[0].interval.upper == 0.0);
   CHECK(cuboid->dimensions[1].interval.lower == 1.0);
-  // What is drawn maps back.
+  // Drawn values map back to the fluents.
   CHECK(lamps.wrong_at_start(fluents, {"Lit(b)"}, {{"lit(a)", 0.0}, {"lit(b)", 1.0}}).empty());
   // Two fluents that want different values of one variable.
   const auto both = lamps.start_cuboid({ground_fluent("Lit(a)"), ground_fluent("Dark()")},

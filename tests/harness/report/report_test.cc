@@ -130,7 +130,7 @@ TEST_CASE("the text says events with places, both figures, the claim, and how to
   }
 }
 
-/// With one blank wherever the text has blanks or begins a new line.
+/// The text with one blank wherever it has blanks or begins a new line.
 std::string unwrapped(const std::string& text) {
   std::istringstream stream(text);
   std::string out;
@@ -170,7 +170,7 @@ TEST_CASE("the summary says first what parted them, then where and how often") {
   CHECK(summary().find("  *  1  PickUp()  fetch.lisp:10  failed: nothing between the pads") !=
         std::string::npos);
   CHECK(summary().find("and so at the end") == std::string::npos);
-  // No action failed: what the event should have done and has not.
+  // No action failed: the summary names an effect that the event should have had.
   found.record.outcomes[1] = {SimStatus::kOk, "", 1.5};
   CHECK(
       summary().starts_with("discrepancy: after PickUp() BoxIn(r1) is false, and the model says "

@@ -1,4 +1,4 @@
-// Tables of simulations, read back by readers that share nothing with what writes them.
+// Tables of simulations, read back by readers that share nothing with their writers.
 
 #include "harness/report/sample_table.h"
 
@@ -58,7 +58,7 @@ TEST_CASE("a table of values after RFC 4180 reads back to the same bits, its tex
   CHECK(std::strtod(table[1][15].c_str(), nullptr) == 5e-324);
   CHECK(table[2][3] == "chosen");
   CHECK(table[2][7] == "0");
-  // What steers a display is escaped: the table of JSON lines has the bytes.
+  // Control characters are escaped here; the table of JSON lines has the bytes.
   CHECK(table[2][8] == "Go(<script>alert(1)</script>): a,\"b\"\\u000d\\u000ac \\u202e rtl");
   CHECK(table[2][9] == rows[1].reason);
   CHECK(std::stod(table[2][11]) == std::numeric_limits<double>::max());

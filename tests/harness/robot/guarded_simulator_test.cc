@@ -8,7 +8,7 @@
 #include "tests/harness/world/fetch_world.h"
 
 // A post strikes the carried box out of a grip that holds it several times over. The repetitions
-// are told whether there is a post, as a solver that makes up a loss would be alone with it.
+// are given the post or its absence, as a solver that makes up a loss would be alone with it.
 
 namespace parallax::harness {
 namespace {

@@ -25,7 +25,7 @@ Outcome place(OdeSimulator& simulator, double x_m) {
   return simulator.act("placing", {{"target.x", x_m}}, kLimit_s);
 }
 
-/// Whether the box hangs in the gripper after a pick-up under the given pad friction and force.
+/// Does the box hang in the gripper after a pick-up under the given pad friction and force?
 bool holds(double friction, double grip_force_n) {
   WorldSpec spec = fetch_world();
   spec.friction.pairs[{"box", "pad"}] = friction;

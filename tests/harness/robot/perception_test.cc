@@ -33,7 +33,7 @@ WorldSpec room() {
   return spec;
 }
 
-/// Nothing is stepped: what the camera sees depends on where things are put.
+/// Nothing is stepped: the camera's view depends on where things are put.
 struct Observer {
   explicit Observer(const WorldSpec& spec = room())
       : world(spec), robot(spec, world), perception(world, robot) {
@@ -117,7 +117,7 @@ TEST_CASE("a point behind another body is hidden, and by which is told") {
   CHECK(half.hidden_by == "screen");
   CHECK(half.seen > 0);
   CHECK(half.seen < 9);
-  // The estimate comes from what is in sight, and is of the whole carton.
+  // The estimate comes from the visible part, and is about the whole carton.
   CHECK((half.p_W - kMilk_W).norm() < 0.02);
   observer.put("milk", {1.0, 0.0, 0.7});
   CHECK(observer.sight().seen == 0);
@@ -185,7 +185,7 @@ TEST_CASE("beliefs are kept until they are taken back") {
   CHECK(*perception.believed(milk) == sighting.p_W);
   CHECK(*perception.believed_bottom_m(milk) == doctest::Approx(sighting.p_W.z() - 0.1));
 
-  observer.put("milk", {1.0, 0.3, 0.9});  // what is not looked at again is believed where it was
+  observer.put("milk", {1.0, 0.3, 0.9});  // a thing not looked at again is believed where it was
   CHECK(*perception.believed(milk) == sighting.p_W);
   perception.believe_as_is(milk);
   CHECK(perception.believed(milk)->isApprox(Eigen::Vector3d(1.0, 0.3, 0.9)));

@@ -40,7 +40,7 @@ class ServoRobot {
     REQUIRE(world_->step());
     at_rest_ = world_->statistics().joints_at_rest - before;
   }
-  /// How many joints rested in the last step.
+  /// Number of joints that rested in the last step.
   std::int64_t at_rest() const { return at_rest_; }
   MobileRobot& robot() { return robot_; }
   Arm& left() { return *robot_.find_arm("left"); }

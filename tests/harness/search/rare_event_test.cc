@@ -86,7 +86,7 @@ TEST_CASE("weighted bounds: clean uniform draws, and lost ones at either end") {
   CHECK(bounds_of(3000, 0, 0).lower(0.05) == 0.0);
   CHECK(bounds_of(0, 0, 0).upper(0.05) == 1.0);
   CHECK(bounds_of(0, 50, 0).upper(0.05) == 1.0);
-  // Of 1000, of which 20 failed and 10 were lost, any number from 20 to 30 may have failed.
+  // With 20 failed and 10 lost runs of 1000, any number from 20 to 30 may have failed.
   const auto lost = bounds_of(970, 20, 10);
   CHECK(lost.upper(0.05) == doctest::Approx(bounds_of(970, 30, 0).upper(0.05)));
   CHECK(lost.lower(0.05) == doctest::Approx(bounds_of(980, 20, 0).lower(0.05)));
@@ -132,7 +132,7 @@ TEST_CASE("moves: keep the uniform law, also beside faces of the cube") {
     for (std::size_t i = 0; i < 3; ++i) mean[i] += point[i] / kChains;
     product += point[0] * point[1] / kChains;
   }
-  // Of a simplex with the size 0.5 in three dimensions; 5 standard errors.
+  // Moments of the uniform law on a simplex of size 0.5 in three dimensions; 5 standard errors.
   for (const double one : mean) CHECK(std::abs(one - 0.125) < 0.0025);
   CHECK(std::abs(product - 0.0125) < 0.0005);
 }

@@ -1,4 +1,4 @@
-// What a simulator says that can be read and makes no sense. Runs and `adapter-check` ask here.
+// Readable answers of a simulator that make no sense. Runs and `adapter-check` use these checks.
 
 #include "harness/simulator/protocol_check.h"
 

@@ -14,7 +14,7 @@
 namespace parallax::harness {
 namespace {
 
-/// Counts what it is asked, and can be told to fail.
+/// Counts the requests, and can be told to fail.
 class ScriptedSimulator final : public Simulator {
  public:
   SimulatorInfo info() override {
@@ -67,7 +67,7 @@ struct Session {
       }
     });
     exit = serve(simulator, to[0], from[1]);
-    // Drains what the worker left unread, so that the writer ends.
+    // Drains the worker's unread output, so that the writer ends.
     std::array<char, 4096> rest{};
     while (read(to[0], rest.data(), rest.size()) > 0) {
     }

@@ -44,7 +44,7 @@ inline BodyMask mask_of(const WorldLayout& layout, std::initializer_list<std::st
   return mask;
 }
 
-/// Where the bodies are by default, by BodyId.
+/// The default places of the bodies, by BodyId.
 inline std::vector<Placement> default_placements(const WorldLayout& layout) {
   std::vector<Placement> placements;
   for (const BodySpec& body : layout.bodies) {

@@ -46,7 +46,7 @@ class Folder {
   fs::path path_;
 };
 
-/// The ids of what was reported and whether the proof was accepted: "ok" or "E7301".
+/// The codes that were reported and whether the proof was accepted: "ok" or "E7301".
 std::string prove(const runtime::CompletenessClaim& claim, const Folder& folder) {
   base::DiagnosticSink sink;
   auto files = runtime::ProofFiles::create(folder.file("p.drat"), sink);
@@ -96,8 +96,8 @@ TEST_CASE("the proof of a complete list is accepted, that of a list without one 
   CHECK(folder.names() == std::vector<std::string>{"p.drat", "p.drat.cnf"});
 }
 
-/// Lists all traces in a search that is logged, unless there are more than 60; has what `damage`
-/// made of the log checked.
+/// Lists all traces in a search that is logged, unless there are more than 60; has the log checked
+/// after `damage`.
 std::optional<runtime::Certificate> prove_by_log(const compiler::CompiledModel& model,
                                                  const Folder& folder,
                                                  const std::function<void(std::FILE*)>& damage) {
@@ -135,7 +135,7 @@ TEST_CASE("the log of a search is accepted; where it is not, a fresh solve makes
     traces += whole->statistics.lemmas > 0 ? 1 : 0;
     ++searched;
     if (seed % 4 != 0) continue;
-    // What is no proof in any form, or nothing at all.
+    // Damaged logs: text that is no proof in any form, or an empty file.
     const auto damaged = prove_by_log(model.compiled, folder, [&](std::FILE* log) {
       if (seed % 8 == 0) std::fputs("nonsense", log);
       if (seed % 8 != 0) REQUIRE(std::freopen(nullptr, "wb", log) != nullptr);

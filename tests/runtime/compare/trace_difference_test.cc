@@ -21,7 +21,7 @@ using runtime::TraceDifference;
 
 constexpr std::size_t kLimit = 400;  // traces of one model
 
-/// What a comparison can be based on: full lists, over the names that both models have.
+/// Reference for a comparison: full lists of traces, over the names that both models have.
 class FullLists {
  public:
   FullLists(const CompiledModel& model, const CompiledModel& other) {
@@ -166,7 +166,7 @@ void check_side(const runtime::OneSided& side, const FullLists& first, const Ful
   CHECK(witness.excluded_by == best->first);
   CHECK(witness.events == best->second);
   CHECK(witness.impossible.has_value() == witness.excluding.empty());
-  // What contradicts the witness does, and nothing of it is too much.
+  // The reported axioms contradict the witness, and each of them is needed for that.
   const std::set<std::uint32_t> excluding(witness.excluding.begin(), witness.excluding.end());
   if (!excluding.empty()) {
     CHECK_FALSE(allows(other, excluding, witness.trace, witness.excluded_by, first));
@@ -237,7 +237,7 @@ TEST_CASE("500 random edits: lost and gained are what the full lists say") {
     CAPTURE(after.files[base::FileId(0)].text());
     compare(before.compiled, after.compiled, seen);
   }
-  // The comparison sees what it is meant to see.
+  // The comparison finds the differences that it is meant to find.
   CHECK(seen.differ > 100);
   CHECK(seen.differ < 450);
   CHECK(seen.lost > 50);

@@ -47,7 +47,7 @@ std::optional<std::set<Occurrences>> listed_explanations(const compiler::Compile
                                                          const AbductionTask& task) {
   runtime::SolverSession session(model, runtime::make_cadical_solver());
   runtime::ModelEnumerator enumerator(session);
-  std::map<Occurrences, bool> entails;  // by what happened
+  std::map<Occurrences, bool> entails;  // by the events that happened
   std::size_t traces = 0;
   while (const auto trace = enumerator.next()) {
     if (++traces > 400) return std::nullopt;

@@ -28,7 +28,8 @@ std::vector<AskedAtom> observable_atoms(const compiler::CompiledModel& model) {
   return atoms;
 }
 
-/// From the list of all traces, without the search that is tested. None: there are too many.
+/// Extents from the list of all traces, without the search that is tested. None: there are too
+/// many.
 std::optional<std::vector<Extent>> listed_extents(const compiler::CompiledModel& model,
                                                   const std::vector<AskedAtom>& atoms) {
   runtime::SolverSession session(model, runtime::make_cadical_solver());
@@ -54,7 +55,7 @@ std::optional<std::vector<Extent>> listed_extents(const compiler::CompiledModel&
   return extents;
 }
 
-/// What is left of it if only what is in all traces was asked for.
+/// The same extents as reported by a search that only asks which atoms hold in all traces.
 std::vector<Extent> without_some(std::vector<Extent> extents) {
   for (auto& extent : extents) {
     if (extent == Extent::kNone || extent == Extent::kSome) extent = Extent::kNotAll;

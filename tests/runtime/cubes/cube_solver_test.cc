@@ -1,4 +1,4 @@
-// Cubes: the answers are the plain solver's, and what is found is the same for any number of jobs.
+// Cubes: the answers are the plain solver's, and the findings are the same for any number of jobs.
 
 #include "runtime/cubes/cube_solver.h"
 
@@ -23,7 +23,7 @@ using runtime::CubeOptions;
 using runtime::SolveStatus;
 using Clause = std::vector<Literal>;
 
-/// No call is easy, and lanes exchange what they know all the time.
+/// No call is easy, and lanes exchange clauses all the time.
 CubeOptions always(std::int64_t jobs, std::int64_t round = 3) {
   CubeOptions options;
   options.jobs = jobs;
@@ -151,7 +151,7 @@ std::string traces(const compiler::CompiledModel& model, std::unique_ptr<runtime
   return out + (enumerator.exhausted() ? "complete" : "stopped");
 }
 
-/// Without the state that is not asked for, which is left to the solver.
+/// Is there a trace? Its state, which is not asked for, is left to the solver.
 bool has_trace(const std::string& listed) { return listed.starts_with('{'); }
 
 struct Seen {

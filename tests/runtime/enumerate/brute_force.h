@@ -9,7 +9,7 @@
 namespace parallax::test {
 
 /// Every assignment of a small model's atoms that the reference evaluator accepts. The atoms are
-/// the evaluator's own: what the compiler knows of the model plays no part.
+/// the evaluator's own: the compiler's knowledge of the model plays no part.
 class BruteForce {
  public:
   explicit BruteForce(const compiler::TypedModel& typed) : evaluator_(typed) {
@@ -89,7 +89,7 @@ class BruteForce {
   std::vector<std::uint32_t> open_;
 };
 
-/// What the enumerator finds, in its order.
+/// Signatures of the enumerator's traces, in its order.
 inline std::vector<std::string> enumerate_all(const compiler::TypedModel& typed,
                                               const compiler::CompiledModel& compiled) {
   std::vector<std::string> found;

@@ -12,8 +12,8 @@
 namespace parallax::test {
 namespace {
 
-/// Flips every HoldsAt and Happens atom of the valuation, one at a time: what is no trace must be
-/// reported.
+/// Flips every HoldsAt and Happens atom of the valuation, one at a time: results that are no traces
+/// must be reported.
 void check_mutations(const compiler::ReferenceEvaluator& evaluator, compiler::Valuation valuation,
                      const std::set<std::string>& traces) {
   const auto flip = [](std::set<std::string>& point, const std::string& atom) {
@@ -93,7 +93,7 @@ TEST_CASE("what does not exist takes the whole instance with it, even beside a t
       "[time] HoldsAt(F(),0) & HoldsAt(F(),time+1) & HoldsAt(G(),time) | "
       "!HoldsAt(F(),0) & HoldsAt(G(),time).\n",
       1);
-  // Of the instance at 1 neither the true nor the false part counts.
+  // Neither the true nor the false part of the instance at 1 counts.
   compare("range time 0 1\nfluent F()\n{time} (time=1 | HoldsAt(F(),time+1)).\n", 1);
   compare("range time 0 1\nfluent F()\n[time] time!=1 & HoldsAt(F(),time+1).\n", 1);
 }
@@ -329,7 +329,7 @@ TEST_CASE("effect constraints: an effect brings others with it, the least that f
               "[event,time] Terminates(event,Alive(),time) -> Terminates(event,Walking(),time)."
               "[event,time] Terminates(event,Walking(),time) -> Terminates(event,Alive(),time).",
           4);
-  // What only brings itself with it never is.
+  // Effects that only cause each other never occur.
   compare(
       "range time 0 1\nfluent F()\nfluent G()\nevent E()\n!HoldsAt(F(),0). !HoldsAt(G(),0).\n"
       "[event,time] Initiates(event,F(),time) -> Initiates(event,G(),time).\n"
@@ -349,8 +349,8 @@ TEST_CASE("effect constraints: an effect brings others with it, the least that f
 }
 
 TEST_CASE("effect constraints: denied, quantified, at another timepoint, in releases") {
-  // D sets G; an event that does not set G sets F. Then: what sets F at one timepoint ends it at
-  // the next, so it can happen at the first only.
+  // D sets G; an event that does not set G sets F. Then an event that sets F at one timepoint ends
+  // it at the next, so it can happen at the first only.
   compare(
       "range time 0 1\nfluent F()\nfluent G()\nevent E()\nevent D()\n"
       "!HoldsAt(F(),0). !HoldsAt(G(),0).\n[time] Initiates(D(),G(),time).\n"

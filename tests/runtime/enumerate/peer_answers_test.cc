@@ -93,7 +93,7 @@ Lines lines_of(const fs::path& path) {
 /// Reads the models of a recorded answer: full states or changes, both forms of the printer.
 class AnswerReader {
  public:
-  /// `full_states`: every timepoint lists all that holds, not what changed.
+  /// `full_states`: every timepoint lists all that holds, not the changes.
   explicit AnswerReader(bool full_states) : full_states_(full_states) {}
 
   std::set<Model> read(const fs::path& path) {

@@ -210,7 +210,7 @@ TEST_CASE("alternatives of a trace are noted, and asked about") {
   CHECK(admits({}, {{fluent("Lit(b2)"), true}, {fluent("At(b2)"), true}}) == base::Known::kYes);
   CHECK(admits({}, {{fluent("Lit(b2)"), false}}) == base::Known::kYes);
   CHECK(admits({}, {{fluent("At(a1)"), true}}) == base::Known::kNo);
-  // What is asked about the way counts as well.
+  // Observations along the way count as well.
   CHECK(admits({{fluent("At(a1)"), true}}, {{fluent("Lit(b2)"), true}}) == base::Known::kYes);
   CHECK(admits({{fluent("At(b2)"), true}}, {{fluent("Lit(b2)"), true}}) == base::Known::kNo);
   CHECK(!enumerator.next());

@@ -132,8 +132,8 @@ TEST_CASE("what the model leaves open is a choice, what comes later can take it 
         "forced HoldsAt(G(),0)");
 }
 
-/// Is the fact implied by the step's axiom and what the step names? A solver of its own is asked,
-/// which has the definitions, the axiom, and what the trace says of releases.
+/// Is the fact implied by the step's axiom and the facts that the step names? A separate solver is
+/// asked, which has the definitions, the axiom, and the trace's releases.
 bool follows(const compiler::CompiledModel& model, const std::vector<bool>& values,
              const WhyStep& step) {
   const auto solver = runtime::make_cadical_solver();
@@ -190,7 +190,7 @@ TEST_CASE("each step of random models follows from its axiom and from facts told
   CHECK(steps_seen > chains);
 }
 
-/// A world in which nothing ends: what happens can only add facts.
+/// A world in which nothing ends: events can only add facts.
 struct GrowingWorld {
   std::string head;
   std::vector<std::string> occurrences;

@@ -34,7 +34,8 @@ mpz_class power(unsigned long base, unsigned long exponent) {
   return out;
 }
 
-/// Two switches that are pressed or not at every timepoint; the text of what else has to hold.
+/// Two switches that are pressed or not at every timepoint; `constraints` is the text of further
+/// conditions.
 std::string switches(int steps, const std::string& constraints) {
   return "sort s\ns A, B\nfluent On(s)\nevent Press(s)\n"
          "[s,time] !HoldsAt(On(s),time) -> Initiates(Press(s),On(s),time).\n"
@@ -58,7 +59,7 @@ TEST_CASE("the counter counts what trying all valuations finds, and finds each b
       REQUIRE(counted.has_value());
       CHECK(*counted == wanted.size());
       valuations += wanted.size();
-      // The second time under no assumptions: what the first one remembered is still true.
+      // The second time under no assumptions: the results remembered from the first are still true.
       problem.assumptions.clear();
     }
     std::size_t before = 0;
@@ -82,7 +83,7 @@ TEST_CASE("far-reaching clauses are counted exactly, far beyond 64 bits") {
   CHECK(count(TextModel(switches(100, "HoldsAt(On(A),1) <-> HoldsAt(On(B),100).\n"))) ==
         power(4, 100) / 2);
   // Each press of A is followed by one of B eight steps later: of four ways to press A and then B
-  // three are left, 32 times; what is pressed in the other steps is free.
+  // three are left, 32 times; presses in the other steps are free.
   CHECK(count(TextModel(switches(
             40, "[time] time<32 & Happens(Press(A),time) -> Happens(Press(B),time+8).\n"))) ==
         power(3, 32) * power(2, 8) * power(2, 8));

@@ -49,7 +49,7 @@ std::vector<std::string> lines(const compiler::CompiledModel& model, const Trace
   return lines(traces, pieces);
 }
 
-/// Without what does not tell traces apart: it need not be determined.
+/// The line without the atoms that do not distinguish traces: they need not be determined.
 std::string observable(const std::string& line) {
   std::string out;
   std::size_t at = 0;
@@ -72,7 +72,7 @@ struct Seen {
   std::size_t far = 0;  // whose clauses look far
 };
 
-/// Whether there is more is told after any number of traces, by every strategy that solves.
+/// Every strategy that solves says after any number of traces whether there are more.
 void compare_ends(const compiler::CompiledModel& model, Distinct distinct, std::size_t count) {
   for (const auto strategy : {Strategy::kAuto, Strategy::kBlocking, Strategy::kSearch}) {
     for (std::size_t k = 0; k <= count; k += 1 + count / 3) {
@@ -299,7 +299,7 @@ TEST_CASE("atoms that clauses look back at from far are carried along the graph,
   CHECK(runtime::count_traces(many.compiled, query(Strategy::kAuto)).count == count);
 }
 
-/// A million states a timepoint: nobody may look at all first halves before the first trace.
+/// A million states a timepoint: no strategy may look at all first halves before the first trace.
 TEST_CASE("a few traces of a wide model take a few solver calls, whatever the levels") {
   const TextModel model(
       "sort thing\n"

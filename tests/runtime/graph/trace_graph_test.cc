@@ -141,7 +141,7 @@ TEST_CASE("the paths of the graph are the traces, in the same order") {
     compare(random_model(seed, kBruteForceSize).print(), seen);
     if (seed % 4 == 0) compare(random_model(seed, kSolverSize).print(), seen);
   }
-  // The comparison sees what it is meant to see.
+  // The comparison finds the differences that it is meant to find.
   CHECK(seen.graphs > 500);
   CHECK(seen.traces > 3000);
   CHECK(seen.undetermined > 5);

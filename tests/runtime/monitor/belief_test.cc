@@ -45,11 +45,12 @@ void compare(const compiler::CompiledModel& model, const StepWindows& windows,
       if (!random.chance(40)) continue;
       unobserved[e] = true;
       options.unobserved.emplace_back(e);
-      // Of no step while the plan waits: there is none in a trace (plan_log_test has those).
+      // Performed in no step while the plan waits: a trace has no such steps (plan_log_test has
+      // them).
       options.performed.emplace_back(e);
     }
   }
-  // What is forgotten is asked again.
+  // With a small memory, forgotten answers are asked for again.
   if (random.chance(20)) options.remembered = 3;
   const auto log = random_log(model, random.pick(lengths), unobserved, random);
   const auto wanted = admitted_lines(lengths, log, unobserved);
@@ -119,7 +120,7 @@ TEST_CASE("what repeats itself before the horizon goes on behind it") {
   Seen seen;
   for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
     const auto text = random_model(seed, kBruteForceSize).print();
-    // What is said of some timepoint says more the more there are.
+    // A formula about some timepoint allows more if there are more timepoints.
     if (text.find("{time") != std::string::npos) continue;
     const TextModel near(over_timepoints(text, 4)), far(over_timepoints(text, 6));
     if (near.ground == nullptr || far.ground == nullptr) continue;
@@ -240,7 +241,7 @@ TEST_CASE("more states than may be kept are not told apart: nothing is said any 
   options.max_states = 8;
   Belief belief(*windows, options);
   runtime::Observation seen(4, 0);
-  // Sixteen states are too many, but an observation is still held against them.
+  // Sixteen states are too many, but an observation is still compared with them.
   CHECK(belief.observe(seen) == Admission::kAdmitted);
   CHECK_FALSE(belief.size());
   seen[0] = 1;

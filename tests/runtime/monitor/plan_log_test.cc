@@ -1,5 +1,5 @@
-// Logs of plans, beside which other events happen, held against an account of the same model that
-// is made of plain sets: what a step makes of a state is computed here, event by event.
+// Logs of plans, beside which other events happen, compared with an account of the same model by
+// plain sets: the effect of a step on a state is computed here, event by event.
 
 #include <doctest/doctest.h>
 
@@ -62,7 +62,7 @@ struct World {
   std::vector<Demand> demands;
   std::vector<Precondition> preconditions;
   std::array<Literal, 2> never;  // never both, unless one is none
-  std::array<Literal, 2> good;   // by action: what makes it a success
+  std::array<Literal, 2> good;   // by action: the condition of its success
   std::vector<int> plan;         // events, in order
   int when = 0;                  // a timepoint at which `then` holds; 0: none
   Literal then;
@@ -181,7 +181,7 @@ struct Place {
   int next = 0, time = 0;
   auto operator<=>(const Place&) const = default;
 };
-constexpr int kLate = 4;  // nothing is said of a single timepoint from here on
+constexpr int kLate = 4;  // no axiom is about a single timepoint from here on
 using Places = std::set<Place>;
 
 struct Line {
@@ -203,7 +203,7 @@ class Account {
     }
     return out;
   }
-  /// With what happens unseen before the next line.
+  /// Adds the places reached by unseen events before the next line.
   Places closed(Places places) const {
     std::vector<Place> todo(places.begin(), places.end());
     while (!todo.empty()) {
@@ -230,7 +230,8 @@ class Account {
     }
     return out;
   }
-  /// What beside these events, and the states behind.
+  /// Successor states after these events together with each least set of demanded events that can
+  /// accompany them.
   std::vector<unsigned> least(unsigned state, unsigned events, int time) const {
     std::vector<unsigned> sets, out;
     for (const auto demanded : subsets(demanded_ & ~events)) {

@@ -20,7 +20,7 @@ std::optional<Literal> happens_at(const CompiledModel& model, std::size_t event,
   return Literal::positive(model.variable(*slot, t));
 }
 
-/// What the plan's perform at t came to.
+/// Outcome of the plan's perform at t: 1 success, -1 failure, 0 no perform.
 int performed_at(const CompiledModel& model, const runtime::SatSolver& solver, Timepoint t) {
   bool performs = false, succeeds = false;
   for (std::size_t v = 0; v < model.fixed.size(); ++v) {
@@ -44,7 +44,7 @@ bool is_subset(const std::vector<bool>& some, const std::vector<bool>& all) {
   return true;
 }
 
-/// Does the log's step stand for what happens in the trace at p?
+/// Does the log's step stand for the events of the trace at p?
 bool is_told(const PlainTrace& trace, std::size_t p, const runtime::ToldStep& told,
              const std::vector<bool>& unobserved) {
   for (std::size_t e = 0; e < unobserved.size(); ++e) {

@@ -10,8 +10,8 @@
 
 namespace parallax::test {
 
-/// A trace as the oracle sees it: which fluents hold at 0 .. n, which events happen at 0 .. n - 1,
-/// and what the plan's perform there came to (0: there was none, 1 it succeeded, -1 it failed).
+/// A trace as the oracle sees it: the fluents that hold at 0 .. n, the events at 0 .. n - 1, and
+/// the outcome of the plan's perform there (0: there was none, 1 it succeeded, -1 it failed).
 struct PlainTrace {
   std::vector<std::vector<bool>> holds, happens;
   std::vector<int> performed;
@@ -33,7 +33,7 @@ using Log = std::vector<LogItem>;
 Log random_log(const compiler::CompiledModel& model, const std::vector<PlainTrace>& traces,
                const std::vector<bool>& unobserved, FuzzRandom& random);
 
-/// How many lines of the log some trace of `lengths` (by number of steps) goes with.
+/// Number of lines of the log with which some trace of `lengths` (by number of steps) agrees.
 std::size_t admitted_lines(const std::vector<std::vector<PlainTrace>>& lengths, const Log& log,
                            const std::vector<bool>& unobserved);
 

@@ -1,4 +1,4 @@
-// Optima, held against every valuation that the reference evaluator accepts: its own numbering,
+// Optima, compared with every valuation that the reference evaluator accepts: its own numbering,
 // its own instances of the objectives, no solver.
 #include "runtime/optimize/optimum.h"
 
@@ -24,7 +24,7 @@ namespace {
 using compiler::Timepoint;
 using Totals = std::vector<std::int64_t>;
 
-/// `formula` times what `weight` says of the value of `time`.
+/// `formula` times the weight that `weight` gives for the value of `time`.
 struct Part {
   std::string text, formula;
   std::int64_t constant, factor;  // weight = constant + factor * time

@@ -46,7 +46,7 @@ Formula random_formula(std::mt19937& random, int variables, std::size_t clauses)
   return formula;
 }
 
-/// What CaDiCaL writes; none if the formula has a model.
+/// The proof that CaDiCaL writes; none if the formula has a model.
 std::optional<std::string> proof_of(const Formula& formula, runtime::ProofForm form) {
   char* text = nullptr;
   std::size_t size = 0;

@@ -1,5 +1,5 @@
-// Proofs and formulas written by hand, a step at a time: what the checker takes and what it
-// refuses, and what its readers make of bytes.
+// Proofs and formulas written by hand, one step at a time: the steps that the checker accepts and
+// refuses, and its readers on arbitrary bytes.
 
 #include <doctest/doctest.h>
 
@@ -205,7 +205,7 @@ TEST_CASE("steps that are cut off or no steps are refused; what stands before th
         "a clause has more literals than there are");
 }
 
-/// The clauses of a formula, one text; or what is wrong with it.
+/// The clauses of a formula as one text, or the reader's problem with it.
 std::string clauses_of(const std::string& text) {
   std::istringstream in(text);
   DimacsReader reader(in);

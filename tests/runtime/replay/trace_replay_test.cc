@@ -1,4 +1,4 @@
-// Traces from elsewhere, held against a model: the verdict of the solver must be that of brute
+// Traces from elsewhere, checked against a model: the verdict of the solver must be that of brute
 // force and of the reference evaluator, whatever the trace leaves open.
 
 #include "runtime/replay/trace_replay.h"
@@ -24,7 +24,8 @@ using runtime::ReplayVerdict;
 using runtime::TraceReplay;
 using Kind = ReplayVerdict::Kind;
 
-/// What a file of ours would say: every atom that a formula of the model mentions is claimed.
+/// The claims of a file that Parallax writes: every atom that a formula of the model mentions is
+/// claimed.
 ClaimedTrace claims_of(const Valuation& valuation, const compiler::CompiledModel& model) {
   ClaimedTrace trace;
   trace.number = 1;

@@ -17,7 +17,7 @@ namespace {
 using compiler::Literal;
 using runtime::SolveStatus;
 
-/// What a solver was asked to do, beyond the lifetime of the solver.
+/// Counts of the work given to a solver; outlives the solver.
 struct Ledger {
   std::int64_t clauses = 0;
   std::int64_t calls = 0;
@@ -85,7 +85,8 @@ TEST_CASE("session: one solver for the whole run, and each clause is handed over
   std::int64_t of_the_model = 0;
   while (const auto trace = enumerator.next()) {
     lengths.push_back(trace->length());
-    // A trace that ends early is one only if the model can go on, so all is needed by now.
+    // A trace may end early only if the model can go on from there, so all timepoints are loaded
+    // here.
     CHECK(session.loaded() == model.compiled().horizon);
     const auto after = ledger;
     // The caller simulates here: nothing is solved and nothing handed over meanwhile.
@@ -94,7 +95,7 @@ TEST_CASE("session: one solver for the whole run, and each clause is handed over
     CHECK(ledger.clauses == after.clauses);
     of_the_model = clauses_up_to(model.compiled(), session.loaded());
     CHECK(ledger.clauses >= of_the_model);
-    // What the session adds for itself, guards and blocking clauses, is little beside the model.
+    // The session's own clauses, guards and blocking clauses, are few compared with the model's.
     CHECK(ledger.clauses < of_the_model + 100 * session.loaded());
   }
   CHECK(lengths == std::vector<compiler::Timepoint>{1, 3, 5, 7, 9, 11});

@@ -14,7 +14,7 @@
 namespace parallax::test {
 namespace {
 
-/// What most models do not tell constants apart by.
+/// Axioms that do not tell constants apart; most axioms of a model are drawn from these.
 const std::vector<std::string> kAlike = {
     "[thing,time] Initiates(Take(thing),Held(thing),time).",
     "[thing,time] !HoldsAt(Held(thing),time) -> Initiates(Take(thing),Held(thing),time).",
@@ -44,7 +44,7 @@ const std::vector<std::string> kAlike = {
     "HoldsAt(Held(thing2),time)) | !({thing} Happens(Take(thing),time)).",
 };
 
-/// What tells some of them apart, or looks as if it did.
+/// Axioms that tell some constants apart, or look as if they did.
 const std::vector<std::string> kApart = {
     "!HoldsAt(Held(T1),0).",
     "HoldsAt(In(T2,P1),0).",
@@ -122,7 +122,7 @@ void check_folded_graph(const compiler::CompiledModel& model, const runtime::Tra
   REQUIRE(whole != nullptr);
   REQUIRE(folded != nullptr);
   CHECK(folded->count() == traces);
-  // Starts stay what they are where only what comes later is alike.
+  // Start states are not folded where only later states are alike.
   CHECK(folded->node_count() <= whole->node_count() + whole->starts().size());
   if (folded->node_count() < whole->node_count()) ++seen.folded;
   if (!layered->hidden.empty()) ++seen.hidden;
@@ -148,7 +148,7 @@ void check_orbits(const compiler::CompiledModel& model, bool all_atoms, Seen& se
     const auto words = words_of(*trace, all_atoms);
     const auto orbit = orbit_of(words, constants);
     CHECK(orbits.size() == orbit.size());
-    // No second representative, and what exchanges make of it are traces.
+    // No second representative, and the images of a representative under exchanges are traces.
     CHECK(!covered.contains(words));
     for (const auto& one : orbit) CHECK(known.contains(one));
     // It is the first one in canonical order.
@@ -227,13 +227,13 @@ TEST_CASE("random models of all constructs: every exchange that is found makes t
   CHECK(seen.symmetric > 5);
 }
 
-/// Constants that belong together, told by facts: the symmetries of a structure, as their cycles.
+/// Constants that belong together by facts: the symmetries of a structure, as their cycles.
 struct Planted {
   std::string facts;
   std::vector<std::vector<std::vector<std::string>>> symmetries;
 };
 
-/// Of things T1, T2, T3 and places P1, P2, P3.
+/// Structures over things T1, T2, T3 and places P1, P2, P3.
 const std::vector<Planted> kPlanted = {
     // Each thing with its own place.
     {"Own(T1,P1).\nOwn(T2,P2).\nOwn(T3,P3).\n[thing,place] Own(thing,place) -> (thing=T1 & "
@@ -258,7 +258,7 @@ const std::vector<Planted> kPlanted = {
      {{{"T1", "T2"}}, {{"T1", "T3"}, {"T2", "T4"}, {"P1", "P2"}}}},
 };
 
-/// What the structure decides about.
+/// Axioms whose effect depends on the planted structure.
 const std::vector<std::string> kTied = {
     "[thing,place,time] Happens(Put(thing,place),time) -> Own(thing,place).",
     "[thing,place,time] HoldsAt(In(thing,place),time) -> Own(thing,place).",
@@ -306,7 +306,7 @@ TEST_CASE("random models with constants that belong together: orbits, sizes and 
     ++seen.models;
     check_orbits(model.compiled, random.chance(40), seen);
     check_existence(model.compiled);
-    // What was planted is found: of all traces it makes none of another orbit.
+    // The planted symmetries are found: none of them maps a trace to a trace of another orbit.
     const runtime::ModelSymmetry symmetry(model.compiled);
     const auto traces = all_traces(model.compiled);
     if (traces.size() > kMostTraces) continue;

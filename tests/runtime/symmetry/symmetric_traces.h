@@ -52,8 +52,8 @@ inline TraceWords renamed(const TraceWords& words, const std::map<std::string, s
   return out;
 }
 
-/// What repeated replacing by symmetries makes of the words: exchanges of any two of a set, and
-/// the cycles of what is replaced together.
+/// The orbit of the words under the symmetries: exchanges of any two constants of a set, and the
+/// cycles of constants that are replaced together.
 inline std::set<TraceWords> orbit_of(const TraceWords& words,
                                      const runtime::Interchangeables& constants) {
   std::vector<std::map<std::string, std::string>> replacements;

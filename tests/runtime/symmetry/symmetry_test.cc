@@ -206,7 +206,7 @@ TEST_CASE("orbits of traces with large groups are counted, not listed") {
   CHECK(traces.total() == 6227020800);  // 13! ways to sit, whatever time says
 }
 
-/// So many of `n` things, and the same again: n over k.
+/// The binomial coefficient n over k.
 mpz_class choose(unsigned long n, unsigned long k) {
   mpz_class out;
   mpz_bin_uiui(out.get_mpz_t(), n, k);

@@ -32,7 +32,7 @@ compiler::Compilation compiled_example(const fs::path& example, const fs::path& 
   return *std::move(compiled);
 }
 
-/// Every model once, told apart by all atoms, as the program of 2005 does.
+/// Every model once, distinguished by all atoms, as by the program of 2005.
 std::vector<runtime::Trace> all_models(const compiler::CompiledModel& model) {
   runtime::SolverSession session(model, runtime::make_cadical_solver());
   std::vector<runtime::Trace> found;

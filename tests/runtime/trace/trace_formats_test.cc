@@ -1,5 +1,5 @@
-// Every format against a reader that knows nothing but the format's description, and what our own
-// readers make of it.
+// Every format against a reader that knows nothing but the format's description, and the results of
+// Parallax's own readers.
 
 #include <doctest/doctest.h>
 
@@ -25,7 +25,7 @@ using compiler::CompiledModel;
 using runtime::Trace;
 using Names = std::vector<std::string>;
 
-/// A trace whose names are told one after the other.
+/// A trace whose names are given one after the other.
 class NamedTrace {
  public:
   explicit NamedTrace(std::int64_t number = 0, std::size_t points = 0) {
@@ -50,7 +50,7 @@ class NamedTrace {
 
 constexpr int kTracesOfOneModel = 20;
 
-/// Trace and model in the order in which they are compared; traces are told apart by this text.
+/// Trace and model in the order in which they are compared; this text distinguishes traces.
 std::string observed(const Trace& trace) { return runtime::to_jsonl(trace); }
 
 std::string atom_of(const std::string& symbol, const Names& arguments) {
@@ -151,7 +151,7 @@ std::vector<Trace> traces_of(const std::string& csv, const CompiledModel& model)
   return told;
 }
 
-/// What is claimed, as a trace; every atom must be claimed.
+/// The claims as a trace; every atom must be claimed.
 Trace trace_of(const runtime::ClaimedTrace& claimed, const CompiledModel& model) {
   NamedTrace out(claimed.number, claimed.points.size());
   auto& trace = out.trace;
@@ -179,7 +179,7 @@ Trace trace_of(const runtime::ClaimedTrace& claimed, const CompiledModel& model)
   return trace;
 }
 
-/// What our reader finds in a file.
+/// Traces that Parallax's reader finds in a file.
 std::vector<Trace> read_back(const std::string& text, const CompiledModel& model) {
   base::SourceFiles files;
   base::DiagnosticSink sink;

@@ -242,7 +242,7 @@ PlanItem Evaluator::in_block(const std::string& name, const std::function<PlanIt
   }
 }
 
-/// What `run` rebinds is undone on every way out.
+/// Evaluates `run`, and undoes its rebindings of specials on every way out.
 PlanItem Evaluator::rebinding(const std::function<PlanItem()>& run) {
   const auto depth = specials_.size();
   try {

@@ -28,7 +28,7 @@ struct Ending {
 struct Scope {
   std::map<std::string, PlanItem> variables;
   std::map<std::string, const Datum*> functions;  // flet and labels: (name parameters body...)
-  std::shared_ptr<Scope> functions_scope;         // what these functions see
+  std::shared_ptr<Scope> functions_scope;         // the scope that these functions see
   std::shared_ptr<Scope> outer;
 };
 using ScopePtr = std::shared_ptr<Scope>;
@@ -127,7 +127,7 @@ class Evaluator {
   std::vector<Block> blocks_;  // of the function that runs, innermost last
   int next_id_ = 0;
   bool by_turns_ = false;
-  Branch* running_ = nullptr;  // none: what is not in a branch
+  Branch* running_ = nullptr;  // none: not in a branch
 };
 
 }  // namespace parallax::test

@@ -18,7 +18,7 @@ namespace parallax::test {
 
 enum class End { kValue, kFailure, kFailureAfterCleanups };
 
-/// Where to go on: which branch of which branch, and there its perform, or an end of the form.
+/// A way to go on: the path of nested branches to a perform, or to an end of the form.
 struct Evaluator::Way {
   std::vector<std::size_t> path;
   std::optional<End> end;
@@ -160,7 +160,7 @@ void Evaluator::restore(const Place& place) {
   task_specials_ = place.task_specials;
 }
 
-/// In the branch's thread: hands control back until somebody lets it go on.
+/// Called in the branch's thread: hands control back until somebody lets it go on.
 void Evaluator::yield(Branch& branch) {
   branch.place = place();
   branch.fresh = false;
@@ -186,8 +186,8 @@ void Evaluator::resume(Branch& branch) {
   if (branch.error) std::rethrow_exception(branch.error);
 }
 
-/// The branch that runs is at a perform. In something that is decided nothing new is begun, but for
-/// what a branch begins with and what its clean-ups do.
+/// The branch that runs is at a perform. Once its form is decided nothing new is begun, except a
+/// branch's first perform and clean-ups.
 void Evaluator::wait_for_turn() {
   if (running_ == nullptr) return;
   bool may = true;
@@ -342,7 +342,7 @@ PlanItem Evaluator::cleaned_up(const Datum& form, const ScopePtr& scope) {
   const auto blocks = blocks_;
   PlanItem out;
   std::exception_ptr jump;
-  bool lost = false;  // what ends these clean-ups early
+  bool lost = false;  // true: an early exit from these clean-ups is lost
   const auto count = [&](int protections, int cleanups) {
     if (branch == nullptr) return;
     branch->protections += protections;
@@ -377,8 +377,8 @@ PlanItem Evaluator::cleaned_up(const Datum& form, const ScopePtr& scope) {
   } catch (const std::exception&) {
     throw;
   } catch (...) {
-    // Of a branch that another one ended nothing but clean-ups is left: a failure is lost, and a
-    // jump leads nowhere.
+    // A branch that another one ended has only its clean-ups left: a failure is lost, and a jump
+    // leads nowhere.
     if (!lost) {
       count(0, -1);
       throw;

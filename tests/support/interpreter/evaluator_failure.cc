@@ -40,7 +40,7 @@ std::vector<std::string> named_classes(const Datum& clause) {
 
 }  // namespace
 
-/// Clauses are functions named by their class: the last one with the name is what is called.
+/// Clauses are functions named by their class: the last one with the name is called.
 const Datum& Evaluator::clause_called(const std::vector<Datum>& clauses,
                                       const std::string& name) const {
   const Datum* out = nullptr;
@@ -52,7 +52,7 @@ const Datum& Evaluator::clause_called(const std::vector<Datum>& clauses,
   return *out;
 }
 
-/// Handlers are asked from the inside outwards, on top of what has failed.
+/// Handlers are asked from the inside outwards, on top of the failed form.
 void Evaluator::signal(const std::string& failure) {
   const auto active = handlers_;
   for (auto i = active.size(); i-- > 0;) {

@@ -9,17 +9,16 @@
 
 namespace parallax::test {
 
-/// What all executions of a plan are, from all initial states and with every pick of a returned
-/// object.
+/// All executions of a plan, from all initial states and with every choice of a returned object.
 struct Executions {
-  std::set<std::string> keys;      // of those that met the constraint, up to where they did
+  std::set<std::string> keys;      // executions that met the constraint, up to that point
   bool beyond_horizon = false;     // some went on beyond it without having met the constraint
   std::set<std::string> failures;  // classes that nobody handled, in executions that ended
   std::size_t runs = 0;
 };
 
-/// Executes the plan, form by form, on one state at a time. Throws std::runtime_error for what it
-/// does not know. The plan's bare top-level forms are run, or else its last function.
+/// Executes the plan, form by form, on one state at a time. Throws std::runtime_error for forms
+/// that it does not know. The plan's bare top-level forms are run, or else its last function.
 /// `by_turns`: the branches of `par` and `pursue` in every order of their performs.
 Executions execute_all(std::string_view plan, World& world, int horizon, bool by_turns = false);
 

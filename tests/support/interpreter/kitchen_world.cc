@@ -30,7 +30,8 @@ std::string model_name(const std::string& text) {
 
 bool within(double value, double low, double high) { return value >= low && value <= high; }
 
-/// Where a location points: `(a location (pose ?p))`, `(in (an object (name d)))`, a pose itself.
+/// The place that a location points to: `(a location (pose ?p))`, `(in (an object (name d)))`, a
+/// pose itself.
 std::string place_name(const PlanItem& target, bool base) {
   const PlanItem* at = &target;
   while (at->kind == PlanItem::Kind::kDesignator) {

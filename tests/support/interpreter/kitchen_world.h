@@ -13,7 +13,7 @@ namespace parallax::test {
 /// milk1, cereal1, bowl1 and spoon1; a place is its name.
 class KitchenWorld final : public World {
  public:
-  /// Which of these a trace ends with: a drive that arrives, a grasp that holds.
+  /// The end of a trace: a drive that arrives, or a grasp that holds.
   enum class Goal { kArrived, kGrasped };
   /// `untidy`: drawers may be open at the start.
   KitchenWorld(Goal goal, bool untidy);

@@ -269,7 +269,7 @@ class Generator {
 
   std::mt19937_64 random_;
   Names things_, kinds_;
-  Names helpers_;  // functions that are written by now
+  Names helpers_;  // functions written so far
   int fresh_ = 0;
 };
 

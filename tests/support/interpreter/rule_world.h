@@ -15,7 +15,7 @@ struct RuleLiteral {
   bool value = true;
 };
 
-/// What a designator means: the same for the text of a binding table and for the world below.
+/// Meaning of a designator, both for the text of a binding table and for the world below.
 struct RuleBinding {
   std::string type;   // of an action with (object (an object (name ?o))), if `event` has ?o;
   std::string event;  // "Poke(?o)", "Look(?k)", "Wait()"

@@ -15,7 +15,7 @@ struct PlanItem {
   Kind kind = Kind::kNil;
   std::string text;      // of a symbol, a string, a failure's class; a designator's kind
   bool keyword = false;  // kSymbol: :left, not left
-  bool object = false;   // kSymbol: what a perform returned, which is known by its name
+  bool object = false;   // kSymbol: an object that a perform returned, known by its name
   double number = 0.0;
   std::vector<PlanItem> items;
   std::vector<std::pair<std::string, PlanItem>> keys;  // of a designator
@@ -30,7 +30,8 @@ struct PlanItem {
   friend bool operator==(const PlanItem&, const PlanItem&) = default;
 };
 
-/// The discrete world that a plan is executed in: one definite state, and what performs do to it.
+/// The discrete world that a plan is executed in: one definite state, and the effects of performs
+/// on it.
 class World {
  public:
   virtual ~World() = default;

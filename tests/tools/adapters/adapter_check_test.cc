@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// A simulator that shares no code with the adapter: a box that is pushed, with noise of the seed.
-/// What stands in the place of `# FAULT` changes an answer before it is sent; `reply` is what is.
+/// The code that replaces `# FAULT` changes an answer, `reply`, before it is sent.
 constexpr const char* kPlainSimulator = R"(import json, os, random, sys, time
 PARAMS = [{"name": "box.x", "unit": "m", "settable": True, "lower": -5, "upper": 5},
           {"name": "box.yaw", "unit": "rad"}, {"name": "box.held", "unit": "1"}]
@@ -306,7 +306,7 @@ TEST_CASE("what adapter-check finds in a handshake or an outcome, a run refuses 
         python.parallax({"run", "odd.yaml", "--allow-commands", "--max-runs", "2", "--out", "out"});
     CAPTURE(ran.err);
     CAPTURE(ran.out);
-    // What is wrong with an act makes a lost run, whose reason the journal has.
+    // An error in an act makes a lost run, whose reason is in the journal.
     const bool is_told = ran.err.find(one.words) != std::string::npos;
     const bool is_lost =
         python.read("out/journal.ndjson").find(one.words) != std::string::npos && ran.code == 4;

@@ -24,7 +24,7 @@ std::string all_requests() {
   return text;
 }
 
-/// A world of one variable; `body` is what `go` does.
+/// A world of one variable; `body` is the code of `go`.
 std::string one_variable(const std::string& body, const std::string& observed = "a") {
   return "import sys, os\n"
          "sim = Adapter('one', determinism='bitwise', time_step=0.1)\n"
@@ -66,7 +66,7 @@ TEST_CASE("the example in plain Python runs to a verdict, and its motion is reco
   CHECK(python.parallax({"check", "kinematic_2d.yaml"}).code == 0);
   const auto run = json_of(python, {"run", "kinematic_2d.yaml", "--out", "out", "--jobs", "2"}, 1);
   CHECK(run.at("verdict") == "discrepancy");
-  // What is said after a failed action is observed; the motion went through the protocol.
+  // The answer after a failed action is an observation; the motion went through the protocol.
   const auto found = run.dump();
   CHECK(found.find("navigation-pose-unreachable") != std::string::npos);
   CHECK(found.find("motion is missing") == std::string::npos);
@@ -120,7 +120,7 @@ TEST_CASE("a defect of the program is an error, with its traceback on standard e
   CHECK(done[2].at("error").at("code") == "internal");
   CHECK(done[2].at("error").at("message").get<std::string>().find("ZeroDivisionError") == 0);
   CHECK(python.errors.find("Traceback") != std::string::npos);
-  // No NaN is said, neither of the state nor of a margin.
+  // No NaN is sent, neither in the state nor in a margin.
   done = replies(python, "a['a.x'] = float('nan')");
   CHECK(done[3].at("error").at("code") == "not_finite");
   done = replies(python, "sim.margin('goal', float('inf'))");

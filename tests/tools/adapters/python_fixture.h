@@ -27,8 +27,8 @@ class PythonFixture : public CliFixture {
     fs::copy(source / "examples", folder());
   }
 
-  /// What a simulator of these lines, with the adapter imported and `sim.run()` at the end, answers
-  /// to the requests. What it wrote to standard error is in `errors`.
+  /// Answers to the requests of a simulator of these lines, with the adapter imported and
+  /// `sim.run()` at the end. Its standard error is in `errors`.
   std::string answers(const std::string& program, const std::string& requests) {
     write("program.py", "from parallax_adapter import *\n" + program + "\nsim.run()\n");
     write("requests", requests);

@@ -31,7 +31,7 @@ TEST_CASE("a run is repeated from its recording, bit by bit, without the simulat
   CAPTURE(first.err);
   CHECK(first.code == 0);
   CHECK(python.read("runs.ndjson").starts_with("{\"parallax_adapter_recording\":1}\n"));
-  // The simulator is gone; whatever the number of jobs, the recording has what is asked.
+  // The simulator is gone; whatever the number of jobs, the recording answers every request.
   python.replace("kinematic_2d.yaml", record,
                  command_line(program + ", replay-adapter, runs.ndjson"));
   std::filesystem::remove(python.folder() / "kinematic_2d.py");
@@ -42,7 +42,7 @@ TEST_CASE("a run is repeated from its recording, bit by bit, without the simulat
     CHECK(again.out == first.out);
     CHECK(python.read("b.csv") == python.read("a.csv"));
   }
-  // What was never asked is a loss, and says so.
+  // A perform that was never asked for is a loss, with that reason.
   const auto other = python.parallax(with(rates, {"--seed", "2"}));
   CHECK(other.code == 4);
   CHECK(other.err.find("the recording has no such `perform`") != std::string::npos);

@@ -85,7 +85,7 @@ TEST_CASE("a robot that speaks ROS 1 keeps the protocol, and its runs are judged
   const auto wrong = scenario("0.8");
   CAPTURE(wrong.result.err);
   CHECK(wrong.document.at("traces").at(0).at("any").at("count") == 4);
-  // What the server aborts is an observation, with its reason.
+  // An abort by the server is an observation, with its reason.
   const auto aborted = with_robot(
       cli, python,
       {"adapter-check", "--act", "drive target.x=3.5", "--json", "--", python, "-B", adapter});

@@ -1,4 +1,4 @@
-// The adapters for Webots and for Gazebo with ROS 2, over stubs of what they stand on.
+// The adapters for Webots and for Gazebo with ROS 2, over stubs of the libraries they need.
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-// Recorded bounds of speed: what is read, and when a row is said to be slow.
+// Recorded bounds of speed: how they are read, and when a row counts as slow.
 
 #include "tools/bench/bounds.h"
 

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What clingo counts; its messages about the program are part of the answer.
+/// Clingo's count of the answer sets; its messages about the program are part of the answer.
 std::string answer_sets(const std::string& name) {
   const auto file =
       fs::temp_directory_path() / ("parallax_tuned_" + std::to_string(::getpid()) + ".lp");

@@ -1,5 +1,5 @@
-// `parallax confirm` and `parallax threshold`: with a simulator behind the protocol of which is
-// known where it goes wrong, and in physics.
+// `parallax confirm` and `parallax threshold`: with a simulator behind the protocol whose failures
+// are known, and in physics.
 
 #include "tools/confirm/confirm.h"
 
@@ -388,7 +388,7 @@ TEST_CASE("a folder that cannot be written, or leads elsewhere, and a run that i
   CHECK(confirm().code == 2);
   fs::remove(cli.folder() / "out" / "confirm");
 
-  // A signal in the middle: what was simulated is found the next time.
+  // A signal in the middle: finished simulations are found the next time.
   const BorderWorld whole({"fails:cup.a>0.7"});
   const auto told = whole.threshold("cup.a", 0, {"--tolerance", "1e-9"});
   ProcessOptions options;
@@ -402,7 +402,7 @@ TEST_CASE("a folder that cannot be written, or leads elsewhere, and a run that i
 
 TEST_CASE("executions of a plan begin elsewhere, and the plan goes on from there") {
   const TwoModels cli;
-  // A world that is a model: its starts have no width, and its open outcomes are told apart.
+  // A world that is a model: its starts have no width, and its open outcomes are distinguished.
   REQUIRE(cli.parallax({"run", "two/unparks.yaml", "--out", "out"}).code == 1);
   auto told = json_of(cli, {"confirm", "out"}, 1);
   CHECK(told.at("verdict") == "confirmed");
@@ -437,7 +437,7 @@ TEST_CASE(
     REQUIRE(line.at("borders").size() == 1);
     const double a = border.at("fails_at"), b = line.at("borders").at(0).at("fails_at");
     CHECK(std::abs(a - b) < 0.05);
-    // One discrepancy, and what moving it has shown, is enough for the kind of cause.
+    // One discrepancy, and the results of moving it, are enough for the kind of cause.
     const auto why = json_of(cli, {"explain", out}, 1);
     CHECK(why.at("cause") == "region");
     CHECK(why.at("borders").at(0).at("parameter") == "box.x");

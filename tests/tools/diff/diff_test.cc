@@ -97,7 +97,7 @@ TEST_CASE_FIXTURE(DiffFixture, "of several edits those are named on which a witn
   REQUIRE(edits.size() == 1);
   CHECK(edits[0]["new"].is_null());
   CHECK(edits[0]["old"]["line"] == 6);
-  // What contradicts it is inertia alone: nothing that stands in the new text was edited.
+  // Inertia alone contradicts the witness: nothing that stands in the new text was edited.
   for (const auto& axiom : document["traces"]["lost"]["witness"]["contradicts"]) {
     CHECK(axiom["edited"] == false);
   }
@@ -201,7 +201,7 @@ TEST_CASE_FIXTURE(DiffFixture, "plans are compared as data, to the smallest piec
   CHECK(result.out.find("  - fetch.lisp:13  ?here\n  + other.lisp:14  ?there\n") !=
         std::string::npos);
   CHECK(result.out.find("  ~ fetch.lisp:") != std::string::npos);
-  // Long forms: the part that changed is shown, not what they begin with in common.
+  // Long forms: the part that changed is shown, not their common beginning.
   std::string body;
   for (int i = 0; i < 30; ++i) body += "  (perform (a motion (type going) (pose ?here)))\n";
   write("long.lisp", "(def-cram-function long (?here)\n" + body + "  (leave early))\n");
@@ -210,7 +210,7 @@ TEST_CASE_FIXTURE(DiffFixture, "plans are compared as data, to the smallest piec
   CHECK(last.find("?here))) (leave early))\n") != std::string::npos);
   CHECK(last.find("?here))) (leave late))\n") != std::string::npos);
   CHECK(last.find("  - long.lisp:32  early\n  + longer.lisp:32  late\n") != std::string::npos);
-  // What is put around a form is the edit, not the form.
+  // A form that is put around another is the edit, not the form inside.
   const std::string retry = "(with-failure-handling ((plan-failure (e) (retry)))\n";
   write("wrapped.lisp", "(def-cram-function long (?here)\n" + retry + body + ") (leave early))\n");
   const auto wrapped = parallax({"diff", "long.lisp", "wrapped.lisp"}).out;

@@ -15,13 +15,13 @@ namespace {
 
 using harness::CounterRng;
 
-/// How often each cause comes in a run of one trace; the rest is clean.
+/// Probability of each cause in a run of one trace; the rest is clean.
 using Causes = std::vector<double>;
 
 /// Many rare causes, which come and go by chance.
 Causes rare_causes(std::size_t count, double each) { return Causes(count, each); }
 
-/// So many runs, or those of them that an interval of this width takes.
+/// Rates of the given number of runs, or, unless `fixed`, of those up to the tenth discrepancy.
 RevisionRates measured(const std::string& events, const Causes& causes, std::int64_t runs,
                        const CounterRng& rng, std::uint64_t first, bool fixed) {
   RevisionRates out{events, {0, 0, 0, fixed}, {}};
@@ -37,7 +37,7 @@ RevisionRates measured(const std::string& events, const Causes& causes, std::int
       }
       u -= causes[c];
     }
-    // Ends at its tenth discrepancy, so that the number depends on what was seen.
+    // Ends at its tenth discrepancy, so that the number of runs depends on the outcomes.
     if (!fixed && out.any.failures == 10) break;
   }
   for (const auto& [c, count] : counts) out.causes.push_back({"cause " + std::to_string(c), count});
@@ -124,7 +124,7 @@ TEST_CASE("a cause that is new in many runs breaks the gate among many that came
   REQUIRE(results.size() == 1);
   CHECK(results[0].outcome == RuleOutcome::kBroken);
   CHECK(results[0].words.find("with 95 % confidence not all by chance") != std::string::npos);
-  // What is shown is what is compared with the error, and says so.
+  // The witness shows the adjusted p, which is compared with the error, and says so.
   CHECK(results[0].witness.find("adjusted p = ") != std::string::npos);
 }
 

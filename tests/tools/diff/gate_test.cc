@@ -1,4 +1,4 @@
-// `parallax diff --gate`: pairs of revisions whose answers are known, and rules that are none.
+// `parallax diff --gate`: pairs of revisions whose answers are known, and invalid rules.
 
 #include <doctest/doctest.h>
 
@@ -34,7 +34,7 @@ constexpr const char* kAll =
 
 class Gate : public TwoModels {
  public:
-  /// What the rules come to, by name; the gate's exit code must follow from them.
+  /// Outcomes of the rules, by name; the gate's exit code must follow from them.
   Json hold(const std::string& rules, const std::string& before, const std::string& after,
             const std::vector<std::string>& more = {}) const {
     write("rules.yaml", rules);
@@ -112,7 +112,7 @@ TEST_CASE("3 and 4: an axiom more only loses, one less only gains") {
   const auto gained = gate.models(kAll, more, kTurkey);
   CHECK(gained["models.lost_traces"] == "kept");
   CHECK(gained["models.gained_traces words"] == "2 gained up to timepoint 1");
-  // What is allowed breaks nothing.
+  // An allowed change breaks no rule.
   const auto allowed =
       gate.models("models: {lost_traces: forbidden, gained_traces: allowed}\n", more, kTurkey);
   CHECK(allowed["passed"] == true);
@@ -230,8 +230,7 @@ TEST_CASE("9: rates are worse, no worse, or not known to be") {
   CHECK(few["rates.gained_causes"] == "kept");
   CHECK(gate.hold("rates: {worse: {confidence: 0.95, margin: 0.4}}\n", "few_clean.json",
                   "few_clean.json")["passed"] == true);
-  // Of runs that ended when they had shown enough wider bounds count: 5.2 % for a hundred clean
-  // ones.
+  // Runs that ended when they had shown enough have wider bounds: 5.2 % for a hundred clean ones.
   auto ended = Json::parse(gate.read("clean.json"));
   ended["intervals"] = "anytime";
   ended["complete"] = false;
@@ -348,7 +347,7 @@ TEST_CASE("rules that are none are refused where they stand") {
   gate.refused("rates: {worse: {margin: 0}}\n", "margin");
   gate.refused("rates: {worse: {marge: 0.1}}\n", "margin");
   gate.refused("models: &a {lost_traces: forbidden}\n", "anchors");
-  // A property that is none is told by its own text.
+  // An invalid property is reported with its own text.
   gate.write("rules.yaml", "models: {properties: ['HoldsAt(Alive(']}\n");
   const auto formula = gate.parallax({"diff", "--gate", "rules.yaml", "old.e", "old.e"});
   CHECK(formula.code == 3);

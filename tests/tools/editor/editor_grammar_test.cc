@@ -1,4 +1,4 @@
-// The grammar for editors sees what the lexer sees.
+// The grammar for editors finds the same tokens as the lexer.
 
 #include <doctest/doctest.h>
 
@@ -142,7 +142,7 @@ std::vector<std::string> scopes_of(const Grammar& grammar, const std::string& te
   return scopes;
 }
 
-/// Comments first: what follows a `;` to the end of its line, and nothing else.
+/// Comments first: from a `;` to the end of its line, and nothing else.
 void check_comments(const std::string& text, const std::vector<std::string>& scopes) {
   bool inside = false;
   for (std::size_t i = 0; i < text.size(); ++i) {

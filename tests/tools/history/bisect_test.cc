@@ -1,4 +1,4 @@
-// Which revision changed a verdict: real repositories of git.
+// Search for the revision that changed a verdict: real git repositories.
 
 #include <csignal>
 #include <filesystem>
@@ -64,7 +64,7 @@ TEST_CASE("the revision that changed the verdict, in either direction, and what 
   repository.right();
   const auto mended = repository.commit("mend");
   const auto last = repository.noise(7);
-  // What the user is at stays: a change, the index, a branch.
+  // The user's work in progress is left alone: a change, the index, a branch.
   repository.write("s/m.e", "not a model\n");
   const auto before = repository.git({"status", "--porcelain=v2", "--branch"});
   const auto refs = repository.git({"for-each-ref"}) + repository.git({"worktree", "list"});
@@ -74,7 +74,7 @@ TEST_CASE("the revision that changed the verdict, in either direction, and what 
   CHECK(result["changed_by"][0]["revision"] == broken);
   CHECK(result["old"]["verdict"] == "no-discrepancy");
   CHECK(result["new"]["verdict"] == "discrepancy");
-  CHECK(result["tried"].size() <= 3);  // of seven, by halves
+  CHECK(result["tried"].size() <= 3);  // of seven revisions, by bisection
   CHECK_MESSAGE(holds(result["difference"].get<std::string>(), "axiom"), result.dump());
   CHECK(repository.bisect({late, last, "--", "s/s.yaml"}, 1)["changed_by"][0]["revision"] ==
         mended);

@@ -1,4 +1,4 @@
-// Histories of suites: what is read of them, and which changes are named.
+// Histories of suites: how they are read, and which changes are named.
 
 #include "tools/history/change_points.h"
 
@@ -91,7 +91,7 @@ TEST_CASE("a slow drift is held against where it began") {
   const auto points = changes_in(history_of(lines)).points;
   REQUIRE(!points.empty());
   CHECK(points[0].line > 1);
-  // Each step by itself is nothing.
+  // Each step by itself is no change.
   CHECK(changes_in(history_of({lines[0], lines[1]})).points.empty());
 }
 
@@ -116,10 +116,10 @@ TEST_CASE("lost runs count for what is less remarkable") {
             .points.empty());
 }
 
-/// Histories of four cases under no change, and what is named of each of their beginnings.
+/// Histories of four cases under no change, and the changes named at each of their beginnings.
 struct Looks {
   int named = 0;     // histories of which some change was named at some look
-  bool kept = true;  // what was named stayed named when the history grew
+  bool kept = true;  // changes once named stayed named when the history grew
 };
 Looks look_at_growing(int histories, int lines_each, unsigned seed) {
   std::mt19937 random(seed);

@@ -43,7 +43,7 @@ TEST_CASE("every suite appends its line, and says what changed since the one bef
   CHECK(lines[0]["revision"] == "r1");
   CHECK(lines[1]["cases"]["s/suite.yaml:lit"]["outcome"] == "failed");
   CHECK(lines[1]["paths"] == Json::array({"s"}));
-  // Another suite in the same file is held against nothing.
+  // Another suite in the same file is compared with nothing.
   CHECK(cli.suite({"--history", "h.jsonl", "--only", "lit"}).code == 1);
   const auto page = cli.parallax({"report", "--history", "h.jsonl", "-o", "h.html"});
   CHECK_MESSAGE(page.code == 0, page.err);
@@ -103,13 +103,13 @@ TEST_CASE("files that are not committed are told, and no filter of the repositor
   CHECK(changed.starts_with(commit + "+changes "));
   CHECK_MESSAGE(holds(changed, commit + "+changes: s/suite.yaml:a: passed, then failed"), changed);
   CHECK(!fs::exists(mark));
-  // A file that git was never told of is not in the commit either.
+  // An untracked file is not in the commit either.
   repository.write("s/lamp.e", kLamp);
   repository.write("s/new.e", kLamp);
   repository.git({"commit", "--quiet", "--allow-empty", "--message", "second"});
   repository.write("s/suite.yaml", "cases:\n  - {id: a, model: new.e, expect: {traces: 2}}\n");
   CHECK(holds(revision(0), "+changes "));
-  // Said by the user, it is what he says.
+  // A revision given by the user is recorded as given.
   CHECK(repository.parallax({"suite", "s", "--history", "h.jsonl", "--revision", "mine"}).code ==
         0);
   CHECK(lines_of(repository.read("h.jsonl")).back()["revision"] == "mine");

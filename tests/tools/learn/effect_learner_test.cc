@@ -1,4 +1,4 @@
-// What steps that were seen teach, without a simulator.
+// Effects learned from observed steps, without a simulator.
 
 #include "tools/learn/effect_learner.h"
 
@@ -57,7 +57,7 @@ class Runs {
     observations_ = std::make_unique<Observations>(*vocabulary_, *completion_);
   }
 
-  /// Where the robot and the things are; "held" in a hand. `lost`: nothing is ever held.
+  /// Places of the robot and of the things; "held" in a hand. `lost`: nothing is ever held.
   struct State {
     std::string robot, box, lamp;
   };
@@ -159,7 +159,7 @@ TEST_CASE(
     return axiom.find("Initiates(Walk(room") != std::string::npos &&
            axiom.find(" -> ") != std::string::npos;
   }));
-  // Free() is not observed; that it holds is what the axioms about states say.
+  // Free() is not observed; that it holds follows from the axioms about states.
   CHECK(std::any_of(axioms.begin(), axioms.end(), [](const auto& axiom) {
     return axiom.find("Initiates(Take(thing),Held(thing)") != std::string::npos &&
            axiom.find("HoldsAt(Free(),time)") != std::string::npos &&

@@ -1,6 +1,6 @@
-// `parallax learn` in worlds that contradict what a model says of states, and in which chance
-// decides what events do. The worlds are models; what is learned is held against them by `parallax
-// diff`.
+// `parallax learn` in worlds that contradict a model's axioms about states, and in which chance
+// decides the effects of events. The worlds are models; the learned model is compared with them by
+// `parallax diff`.
 
 #include <doctest/doctest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// How many traces the learned scenario OUT has that `truth` has not, and the other way round.
+/// Traces that the learned scenario OUT has and `truth` lacks, and the other way round.
 struct Traces {
   Json lost, gained;
 };
@@ -28,8 +28,8 @@ Traces traces(const CliFixture& cli, const std::string& truth, const std::string
   return {found.at("lost"), found.at("gained")};
 }
 
-/// A camera looks along three cells for a cup. It sees what lies where it looks; the world's camera
-/// also what lies on the next cell.
+/// A camera looks along three cells for a cup. It sees things that lie where it looks; the world's
+/// camera also sees those on the next cell.
 class CameraWorld : public CliFixture {
  public:
   CameraWorld() {
@@ -72,7 +72,7 @@ class CameraWorld : public CliFixture {
           "    ok: Visible(?o) @t else perception-object-not-found\n");
   }
 
-  /// A scenario in which `world` is the world, and `model` what is said of it.
+  /// A scenario with the given world and model.
   void scenario(const std::string& name, const std::string& model, const std::string& world,
                 const std::string& more = "") const {
     write(name, more +
@@ -99,7 +99,7 @@ TEST_CASE("half of a definition that runs contradict gets exceptions, and is nam
   REQUIRE(report.at("contradicted_formulas").size() == 1);
   const auto& told = report.at("contradicted_formulas").at(0);
   CHECK(told.at("place").get<std::string>().starts_with("narrow.e:2"));
-  // What lies where the camera looks is visible all the same.
+  // The other half stands: an item where the camera looks is visible.
   CHECK(told.at("formula").get<std::string>().starts_with(
       "[item,time] HoldsAt(Visible(item),time) ->"));
   CHECK(!told.at("runs").empty());
@@ -109,14 +109,14 @@ TEST_CASE("half of a definition that runs contradict gets exceptions, and is nam
   cli.scenario("truth.yaml", "wide.e", "wide.e", "execution: closed-loop\n");
   const auto found = traces(cli, "truth.yaml", "out");
   CHECK(found.lost.at("answer") == "none");
-  // What goes beside it is as certain as what it says.
+  // The learned exceptions are as certain as the definition itself: no trace is gained.
   CHECK(found.gained.at("answer") == "none");
 }
 
 TEST_CASE(
     "each half of a definition is refuted by itself, and chance gets no exceptions one by one") {
   const CameraWorld cli;
-  // What lies where the camera looks is seen or not.
+  // An item where the camera looks is seen or not, by chance.
   cli.scenario("own.yaml", "narrow.e", "dim.e");
   const auto report = json_of(cli, {"learn", "own.yaml", "--out", "out"});
   CHECK(report.at("clean") == true);
@@ -124,11 +124,11 @@ TEST_CASE(
   REQUIRE(report.at("contradicted_formulas").size() == 1);
   const auto told = report.at("contradicted_formulas").at(0);
   CHECK(told.at("formula").get<std::string>().ends_with("-> HoldsAt(Visible(item),time)."));
-  // All of it: no cell is told from another.
+  // All of it: no cell is distinguished from another.
   const auto instead = told.at("instead").get<std::string>();
   CAPTURE(instead);
   CHECK(instead.starts_with("[item,time] time=0 -> "));
-  // What is not where the camera looks is never visible.
+  // The other half stands: an item where the camera does not look is never visible.
   CHECK(report.at("model").get<std::string>().find("HoldsAt(Visible(item),time) ->") !=
         std::string::npos);
 }
@@ -196,14 +196,14 @@ TEST_CASE("chance that depends on the state: its condition is found, and rounds 
   CHECK(report.at("clean") == true);
   CHECK(report.at("runs") == report.at("runs_admitted"));
   CHECK(report.at("judged_in_closed_loop") == true);
-  // There are 216 initial states; nothing is said of one of them by itself.
+  // There are 216 initial states; nothing is stated about a single one of them.
   CHECK(report.at("axioms").get<int>() <= 6);
   const auto found = traces(cli, "truth.yaml", "out");
   CAPTURE(cli.read("out/learned.e"));
   CHECK(found.lost.at("answer") == "none");
   CHECK(found.gained.at("answer") == "none");
   CHECK(cli.parallax({"run", "out/learned.yaml", "--allow-outside", "--out", "again"}).code == 0);
-  // What was seen both ways is named once for each way.
+  // A case that was observed both ways is named once for each way.
   CHECK(!report.at("contradictions").empty());
 }
 
@@ -297,7 +297,7 @@ TEST_CASE("a formula that is no definition goes where runs contradict it, but fo
                            "[item,time] {cell} HoldsAt(At(item,cell),time) | "
                            "HoldsAt(Held(item),time).\n"
                            "[item,cell,time] Initiates(Put(item,cell),At(item,cell),time).\n");
-  // What is put on the ledge falls.
+  // An item that is put on the ledge falls.
   cli.write("world.e", words +
                            "[item,cell,time] cell!=ledge -> "
                            "Initiates(Put(item,cell),At(item,cell),time).\n");
@@ -324,7 +324,7 @@ TEST_CASE("a formula that is no definition goes where runs contradict it, but fo
   const auto& told = report.at("contradicted_formulas").at(0);
   CHECK(told.at("place").get<std::string>().starts_with("model.e:"));
   CHECK(told.at("instead").get<std::string>().find("time=0 -> ") != std::string::npos);
-  // The start is what it was: the cup is somewhere.
+  // The start is unchanged: the cup is somewhere.
   cli.write("truth.e", words +
                            "[item] {cell} HoldsAt(At(item,cell),0) | HoldsAt(Held(item),0).\n"
                            "[item,cell,time] cell!=ledge -> "

@@ -1,5 +1,5 @@
-// `parallax learn`: what it makes of worlds that are models is held against these by `parallax
-// diff`, which shares nothing with it.
+// `parallax learn` in worlds that are models. `parallax diff`, which shares nothing with it,
+// compares the learned models with these.
 
 #include <doctest/doctest.h>
 
@@ -51,7 +51,7 @@ TEST_CASE("the drawer's model is learned from its declarations; every axiom name
   CHECK(report.at("claims").size() == 1);
   const auto model = report.at("model").get<std::string>();
   CHECK(model == cli.read("out/learned.e"));
-  // Also what the scenario's own model forgets: its axioms are not looked at.
+  // Also facts that the scenario's own model lacks: its axioms are not looked at.
   CHECK(model.find("Terminates(OpenDrawer(drawer),Parked(),time).\n; Taught by run") !=
         std::string::npos);
   cli.write("two/truth.yaml", "include: unparks.yaml\nmodel: [unparks.e, start.e]\n");

@@ -1,4 +1,4 @@
-// What outcomes of performs say of fluents that nobody observes.
+// Facts about unobserved fluents that follow from the outcomes of performs.
 
 #include "tools/learn/outcome_facts.h"
 

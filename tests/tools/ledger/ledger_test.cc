@@ -1,5 +1,5 @@
-// The ledger of known discrepancies, as real processes: add, check, status, and what `suite`,
-// `verify` and `report` make of it.
+// The ledger of known discrepancies, as real processes: add, check, status, and its use by `suite`,
+// `verify` and `report`.
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -139,7 +139,7 @@ TEST_CASE("a suite fails on what the ledger does not know, also where a discrepa
   };
   REQUIRE(suite({}).code == 0);
   const std::vector<std::string> with = {"--ledger", "ledger.yaml"};
-  // The pass that was kept without a ledger is none with it.
+  // A pass that was kept without a ledger does not count with one.
   CHECK(suite(with).out == "1 passed, 0 failed\n");
   CHECK(suite(with).out == "1 passed, 0 failed, 1 not run again\n");
   const auto known = cli.read("ledger.yaml");

@@ -1,4 +1,4 @@
-// The text of a ledger, edited line by line: what is not meant stays as it is.
+// The text of a ledger, edited line by line: the rest stays as it is.
 
 #include "tools/ledger/ledger_text.h"
 
@@ -142,7 +142,7 @@ TEST_CASE("a status is replaced where it stands") {
   entry.status = LedgerStatus::kAccepted;
   entry.decision = "never, mind";
   const auto text = with_status(hand, read(hand), entry);
-  // Within braces a comma would end the text: what cannot be replaced so is left alone.
+  // Within braces a comma would end the text: a value that cannot be replaced so is left alone.
   if (text) CHECK(read(*text).find("b")->decision == "never, mind");
   if (!text) CHECK(read(hand).find("b")->status == LedgerStatus::kOpen);
 }

@@ -48,7 +48,7 @@ class Completions {
 /// bash, which splits lines at `=`, as it does before it calls a completion.
 class Bash : public Completions {
  public:
-  /// What it would offer for the last of these words.
+  /// Completions that bash would offer for the last of these words.
   Words offers(const std::vector<std::string>& line) const {
     std::vector<std::string> command = {
         "bash",

@@ -29,7 +29,7 @@ TEST_CASE("the program's help lists each command once, below what one does with 
   for (const auto& name : names) {
     const auto own = cli.parallax({name, "--help"});
     CHECK_MESSAGE(own.code == 0, name);
-    // What every command has stands last, with the help itself.
+    // The options that every command has stand last, with the help itself.
     const auto general = own.out.find("\nGeneral:\n");
     REQUIRE_MESSAGE(general != std::string::npos, name);
     CHECK_MESSAGE(own.out.find("  -h,--help", general) != std::string::npos, name);
@@ -72,7 +72,7 @@ TEST_CASE("`help` tells of commands and topics, and names the nearest where ther
   CHECK(has(near.err, "replace `exit-code` with `exit-codes`"));
   CHECK(has(cli.parallax({"help", "rnu"}).err, "with `run`"));
   CHECK(has(cli.parallax({"man", "trcaes"}).err, "with `traces`"));
-  // Hidden commands are none to speak of.
+  // Hidden commands have no help of their own.
   CHECK(cli.parallax({"help", "worker"}).code == 2);
   CHECK(cli.parallax({"help", "\x1b[31m"}).err.find('\x1b') == std::string::npos);
 }

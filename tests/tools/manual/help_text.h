@@ -8,7 +8,7 @@
 
 namespace parallax::test {
 
-/// What `--help` says, read as a person reads it: nothing here shares code with what is tested.
+/// Content of `--help`, read as a person reads it: nothing here shares code with what is tested.
 struct HelpText {
   std::vector<std::string> options;                        // "--jobs", "-j"; as they stand
   std::map<std::string, std::vector<std::string>> values;  // of options with a closed set

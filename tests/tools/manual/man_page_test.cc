@@ -21,7 +21,7 @@ class ManPages {
     CHECK(made.out.empty());
   }
   std::filesystem::path folder() const { return cli.folder() / "man"; }
-  /// As a reader with a wide window sees it.
+  /// The page as a reader with a wide window sees it.
   ProcessResult shown(const std::string& name) const {
     return run_process({"/usr/bin/env", "MANWIDTH=300", "MAN_KEEP_FORMATTING=", "LC_ALL=C.UTF-8",
                         "man", "--warnings", "-P", "cat", "-l",
@@ -73,7 +73,7 @@ TEST_CASE("the program's page names every command, and what is true of all") {
   for (const auto* section : {"\nEXIT STATUS", "\nFILES", "\nSEEDS", "\nTRUST", "\nEXAMPLES"}) {
     CHECK_MESSAGE(page.out.find(section) != std::string::npos, section);
   }
-  // What is to be typed is shown as it is typed.
+  // Text to be typed is shown as it is typed.
   CHECK(page.out.find("--property \"!HoldsAt(Broken(),time)\"") != std::string::npos);
 }
 

@@ -1,5 +1,5 @@
-// Pages in headless Chromium: no message on the console, no request to a network, what a person
-// does with keyboard and mouse, contrast; with axe-core where `tools/setup --browser` got it.
+// Pages in headless Chromium: no message on the console, no request to a network, use with keyboard
+// and mouse, contrast; with axe-core where `tools/setup --browser` got it.
 
 #include <doctest/doctest.h>
 
@@ -61,7 +61,7 @@ std::string decoded(const std::string& base64) {
   return out;
 }
 
-/// The page with scripts of the test, which its policy is told of.
+/// The page with scripts of the test, which its policy allows.
 std::string with_scripts(std::string page, const std::vector<std::string>& scripts) {
   const std::string policy = "script-src '";
   for (const auto& script : scripts) {
@@ -71,7 +71,7 @@ std::string with_scripts(std::string page, const std::vector<std::string>& scrip
   return page;
 }
 
-/// In a log of the network, of requests that a page from a file makes.
+/// Mark of requests by a page from a file, in a log of the network.
 constexpr const char* kAskedByPage = "\"initiator\":\"null\"";
 
 ProcessResult browse(const CliFixture& cli, const std::string& name, bool dark,
@@ -101,12 +101,13 @@ ProcessResult browse(const CliFixture& cli, const std::string& name, bool dark,
   return run_process(words);
 }
 
-/// What the probe found in the page; checks that nothing was asked of a network or told on the
-/// console.
+/// Options of `probe`.
 struct ProbeOptions {
   bool dark = false, with_axe = true, with_gl = false;
   int width = 0;  // of a frame that the page is put into; windows have a least width
 };
+/// Findings of the probe in the page. Checks that the page sent no request to a network and wrote
+/// nothing to the console.
 Json probe(const CliFixture& cli, const std::string& name, const ProbeOptions& options = {}) {
   CAPTURE(name);
   CAPTURE(options.dark);
@@ -136,7 +137,7 @@ Json probe(const CliFixture& cli, const std::string& name, const ProbeOptions& o
   }
   const auto net = cli.read("net.json");
   CHECK_FALSE(net.empty());
-  // What the browser itself may look for has no initiator.
+  // Requests that the browser itself makes have no initiator.
   CHECK(net.find(kAskedByPage) == std::string::npos);
   const std::string mark = "data-probe=\"";
   const auto at = result.out.find(mark);
@@ -179,7 +180,7 @@ TEST_CASE("a page works in a browser, by light and by night") {
     CHECK(edge["focusable"] > 10);
   }
   probe(cli, "both.html");
-  // On a telephone: nothing is cut, what is wider than the window can be moved in it.
+  // On a telephone: nothing is cut; parts wider than the window can be moved in it.
   for (const auto* name : {"loop.html", "edge.html", "both.html"}) {
     probe(cli, name, {.width = 360});
   }

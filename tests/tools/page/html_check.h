@@ -8,7 +8,7 @@
 
 namespace parallax::test {
 
-/// What a reader of HTML makes of a page, found out by a scanner of its own.
+/// A page as an HTML reader sees it, found out by a separate scanner.
 struct HtmlPage {
   std::vector<std::string> faults;  // badly nested, doubtful attributes, links to nowhere
   std::map<std::string, std::size_t> elements;

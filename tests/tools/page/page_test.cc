@@ -18,7 +18,7 @@
 namespace parallax::test {
 namespace {
 
-using namespace parallax::tools;  // NOLINT: what is tested
+using namespace parallax::tools;  // NOLINT: the namespace under test
 
 TEST_CASE("the hash of an empty script as browsers write it") {
   CHECK(csp_hash("") == "sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=");
@@ -245,7 +245,7 @@ TEST_CASE("confidence is that of the runs whose starts were drawn") {
                    harness::percent_up(harness::bound_after(30, 0.99))) != std::string::npos);
   CHECK(shown.find("Trace 1") == std::string::npos);
   CHECK(shown.find("Go(r1), Go(r2): too-far") != std::string::npos);
-  // With failures the certified level is another one, and it is the one that is told.
+  // With failures the certified level is another one, and that one is shown.
   for (auto& sample : page.samples) {
     if (sample.sample < 5) sample.verdict = SampleVerdict::kDiscrepancy;
   }

@@ -156,7 +156,7 @@ TEST_CASE("damaged and foreign folders give a page with a banner") {
   banner_of("before its first line is complete");
   std::filesystem::remove(cli.folder() / "sticks/journal.ndjson");
   banner_of("The folder has no journal");
-  // Of a scenario that has changed nothing is quoted.
+  // If the scenario has changed, none of its sources is quoted.
   cli.write("sticks/journal.ndjson",
             replaced(journal, "\"scenario_hash\":\"", "\"scenario_hash\":\"00"));
   const auto changed = banner_of("cannot be read any more as it was");

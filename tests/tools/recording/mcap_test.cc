@@ -1,4 +1,4 @@
-// The files for other programs, read by another program.
+// Recordings exported for other programs, read by another program.
 
 #include <doctest/doctest.h>
 

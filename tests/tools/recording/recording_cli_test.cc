@@ -1,4 +1,4 @@
-// What moved in simulations, as users get it: kept by `run`, made by `replay`, written by `export`.
+// Recorded motion, as users get it: kept by `run`, made by `replay`, written by `export`.
 
 #include <doctest/doctest.h>
 
@@ -170,7 +170,7 @@ TEST_CASE("what is missing or broken is told with the command that makes it") {
   const auto whole = cli.read("my run/recordings/1.1.rec");
   CHECK(cli.parallax({"export", "my run", "--sample", "1.1"}).code == 0);
 
-  // What is there is replaced if it is an earlier export, and else refused.
+  // An existing file is replaced if it is an earlier export; otherwise the export is refused.
   const auto journal = cli.read("my run/journal.ndjson");
   for (const auto* format : {"csv", "mcap"}) {
     const auto over = cli.parallax(

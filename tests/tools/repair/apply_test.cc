@@ -1,4 +1,4 @@
-// What a proposal writes: every file of it, or none. Runs that are set aside.
+// Files that a proposal writes: all of them, or none. Runs that are set aside.
 
 #include "tools/repair/apply.h"
 

@@ -1,5 +1,4 @@
-// A condition of which one of two is enough: there is nothing wrong with indoor places, and outdoor
-// ones take an open door.
+// A condition that is a disjunction: indoor places are fine, and outdoor ones need an open door.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Runs that tell proposals apart, in worlds that are models: what is right is known.
+// Runs that distinguish proposals, in worlds that are models, so that the right one is known.
 
 #include <doctest/doctest.h>
 
@@ -93,7 +93,7 @@ TEST_CASE("a run cannot tell which condition is missing; further ones from other
     }
     CHECK(cli.read("out/experiments/journal.ndjson") == recorded);
 
-    // Of another model nothing is run.
+    // No experiments are run for another model.
     cli.replace("model.e", "load domain.e\n", "load domain.e\n; Changed.\n");
     const auto other = json_of(cli, {"repair", "out", "--other-model"}, 1);
     CHECK(other.at("experiments") == made);
@@ -259,7 +259,7 @@ TEST_CASE("what went wrong once may be chance: it is done again where the world 
     cli.write("start.e",
               "!HoldsAt(Open(),0).\nHoldsAt(Lit(),0).\nHoldsAt(Full(),0).\n"
               "HoldsAt(Parked(),0).\n");
-    // Of one run nothing tells that it could have opened.
+    // A single run does not tell that it could have opened.
     int seed = 1;
     for (; seed <= 20; ++seed) {
       fs::remove_all(cli.folder() / "out");
@@ -329,7 +329,7 @@ TEST_CASE("whatever the world is like: experiments never drop what is right") {
       const auto before = json_of(cli, {"repair", "out", "--runs", "0", "--limit", "0"}, 1);
       const auto after = json_of(cli, {"repair", "out", "--limit", "0"}, 1);
       CAPTURE(after.dump());
-      // What one run shows need not be enough to find it.
+      // A single run may not be enough to find the right proposal.
       if (proposes(before, world.right)) {
         ++known;
         CHECK(proposes(after, world.right));

@@ -182,7 +182,8 @@ TEST_CASE("every edit of a model, switched on and written") {
          compiler::flat_text(domain.ast, domain.files, texts.changes(set)));
   }
   CHECK(kinds.size() == 10);
-  // Without contradictions only what the world refused, and can happen, is left open, if asked for.
+  // Without contradictions only events that the world refused, and that can happen, are left open,
+  // if asked for.
   const auto opened = [&](bool refused, bool not_possible) {
     scope.open_outcomes = false;
     scope.open_refused = refused;

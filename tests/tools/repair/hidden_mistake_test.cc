@@ -1,5 +1,5 @@
-// Mistakes that do not show in what differs: the worlds of tools/bench/worlds, with one mistake
-// each.
+// Mistakes that do not show in the differing fluents: the worlds of tools/bench/worlds, with one
+// mistake each.
 
 #include <doctest/doctest.h>
 
@@ -43,7 +43,8 @@ struct Mistaken : CliFixture {
 };
 
 TEST_CASE("an effect on the wrong fluent, where the right one is open in the model") {
-  // After Spin the model lets Loaded be anything, so that what Shoot does to it is no difference.
+  // After Spin the model lets Loaded be anything, so that the effect of Shoot on it is no
+  // difference.
   const std::string right = "[time] Terminates(Shoot(),Loaded(),time).";
   for (const std::string wrong : {"Aimed", "Alive"}) {
     CAPTURE(wrong);

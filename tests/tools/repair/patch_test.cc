@@ -1,4 +1,5 @@
-// Where the names in a patch begin: git takes it there, wherever `repair` was called.
+// The folder at which the names in a patch begin: git applies it there, wherever `repair` was
+// called.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Edits of a plan's text: what changes is what was meant, and nothing else.
+// Edits of a plan's text: the intended part changes, and nothing else.
 
 #include "compiler/repair/plan_edit.h"
 

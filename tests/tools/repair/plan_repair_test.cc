@@ -1,4 +1,4 @@
-// `parallax repair` over the plan, in worlds that are models: what helps is known.
+// `parallax repair` over the plan, in worlds that are models, so that the remedy is known.
 
 #include <doctest/doctest.h>
 
@@ -126,7 +126,7 @@ TEST_CASE("a perform is missing: it is inserted, and the plan arrives in open an
     const PlanWorld cli(kDrawer);
     const auto report = cli.repaired(scenario);
     CAPTURE(report.dump(1));
-    // The model comes first: it is what is wrong with the world as it is.
+    // The model comes first: it differs from the world as it is.
     CHECK(report.at("proposals").at(0).at("changes") == "model");
     const auto found =
         plan_proposals(report, {"(type closing)", "(name top)", "is done in front of"});
@@ -211,7 +211,7 @@ TEST_CASE("what fails at random is tried again") {
   REQUIRE(!found.empty());
   CHECK(found.front().at("hides_failure") == false);
   cli.apply(found.front());
-  // Of a model that says so the plan is right.
+  // With a model in which opening may fail, the plan is right.
   cli.write("w/model.e",
             kDeclared + rest + "[drawer,time] Releases(OpenDrawer(drawer),Open(drawer),time).\n");
   CHECK(cli.verdict("w/closed.yaml") == "no-discrepancy");
@@ -235,7 +235,7 @@ TEST_CASE("what fails for good and is not needed is done without") {
     CHECK((!hidden || each.at("hides_failure") == true));
     hidden = each.at("hides_failure");
   }
-  // The event went well in no run: nothing is said of what it may need.
+  // The event went well in no run: no precondition is proposed for it.
   CHECK(plan_proposals(report).size() == found.size());
   cli.apply(found.front());
   cli.write("w/model.e", kDeclared + rest);

@@ -61,7 +61,7 @@ TEST_CASE("the split is the first proposal; git takes it, and then both halves a
 
   const auto again = json_of(cli, {"run", "edge.yaml", "--out", "again", "--seed", "1"});
   CHECK(again.at("verdict") == "no-discrepancy");
-  // Of the other half the model says now what is seen there: it comes to lie in r2.
+  // For the other half, the model now says what is seen there: the box comes to lie in r2.
   cli.replace("edge.yaml", "(Happens(Place(region),time-1) & HoldsAt(BoxIn(region),time))",
               "Happens(Place(region),time-1)");
   const auto halves =
@@ -93,7 +93,7 @@ TEST_CASE("rounds in physics: split, run again, clean") {
   CHECK(cli.read("common.yaml").find("BoxFarX") == std::string::npos);
 }
 
-/// What holds and happens in each trace, without one fluent; how often each.
+/// Fluents and events of each trace, without one fluent, and the number of such traces.
 std::map<std::string, int> traces_without(const CliFixture& cli, const std::string& fluent) {
   const auto result =
       cli.parallax({"traces", "both.e", "--limit", "0", "--horizon", "3", "--format", "jsonl"});

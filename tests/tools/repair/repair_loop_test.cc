@@ -233,7 +233,7 @@ TEST_CASE("rounds in physics") {
   const auto before = files_below(cli.folder());
   const auto wrong = json_of(cli, {"repair", "out", "--loop", "--out", "fixed"}, 1);
   CAPTURE(wrong.dump(1));
-  // The plan picks up what is out of reach: a model that says so leaves nothing to run.
+  // The plan picks up a thing out of reach: a model that forbids this leaves nothing to run.
   CHECK(wrong.at("end") == "plan-at-fault");
   CHECK(wrong.at("rounds").at(0).at("failed") > 0);
   for (const auto& [path, text] : before) CHECK(cli.read(path) == text);

@@ -1,4 +1,4 @@
-// `parallax repair` against worlds that are models: what is wrong is known.
+// `parallax repair` against worlds that are models, so that the mistake is known.
 
 #include <doctest/doctest.h>
 
@@ -38,7 +38,7 @@ TEST_CASE("a forgotten effect: the first proposal has it, git applies it, and th
   CHECK(report.at("partings").at(0).at("event") == "OpenDrawer(top)");
   CHECK(report.at("experiments") == 0);
 
-  // Of each proposal the patch is one that git takes, and it is what --apply writes.
+  // The patch of each proposal is accepted by git, and is what --apply writes.
   for (const auto& proposal : report.at("proposals")) {
     cli.write("p.diff", proposal.at("patch").get<std::string>());
     const auto checked = run_process({"git", "apply", "--check", "p.diff"}, in_folder(cli));
@@ -170,7 +170,7 @@ TEST_CASE("nothing to repair is said, with what to do instead") {
   CHECK(result.out.find("More runs may find something") != std::string::npos);
   CHECK(json_of(cli, {"repair", "out"}).at("proposals").empty());
 
-  // Of a run that came to no verdict that is not said.
+  // For a run that came to no verdict this is not said.
   CHECK(cli.parallax({"run", "two/agree.yaml", "--max-runs", "5", "--out", "short"}).code == 4);
   const auto open = cli.parallax({"repair", "short"});
   CHECK(open.code == 4);
@@ -312,7 +312,7 @@ TEST_CASE("a run in closed loop is evidence like any other") {
         std::string::npos);
 }
 
-/// A box in a hand, and a drawer: what `world` says happens, and what `model` says.
+/// A box in a hand, and a drawer, with the axioms of the world and of the model.
 std::string box_world(const TwoModels& cli, const std::string& world, const std::string& model) {
   cli.write("two/domain.e",
             "sort drawer\nsort thing\ndrawer top\nthing box, jar\n"
@@ -380,7 +380,8 @@ TEST_CASE("effects that chance brings together are left open together") {
   CHECK(first.at("evidence").at(0) == report.at("causes").at(0).at("words"));
 }
 
-/// What nothing tells apart says so of each other; there are such.
+/// Checks that tied proposals have equally many ties and the same measures, and that there are
+/// some.
 void check_ties(const Json& proposals) {
   std::size_t tied = 0;
   for (const auto& proposal : proposals) {

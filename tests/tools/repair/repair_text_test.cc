@@ -1,4 +1,4 @@
-// What is said of proposals that experiments have dropped, or that others stand in the place of.
+// Texts about proposals that experiments have dropped, or that others have displaced.
 
 #include <doctest/doctest.h>
 

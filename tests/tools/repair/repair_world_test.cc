@@ -1,4 +1,4 @@
-// A world that is a model, and reads files of the model that is repaired, stays what it was.
+// A world that is a model, and reads files of the repaired model, stays as it was.
 
 #include <doctest/doctest.h>
 
@@ -56,7 +56,7 @@ TEST_CASE("rounds run in the world as it was, though it reads the files that are
     const auto before = files_below(cli.folder());
     const auto report = json_of(cli, {"repair", "out", "--loop", "--out", "fixed"});
     CHECK(report.at("end") == "clean");
-    // What the world read lies there a second time, as it was.
+    // The files that the world read are there a second time, unchanged.
     int frozen = 0;
     for (const auto& [path, text] : files_below(cli.folder() / "fixed")) {
       if (path.find("world-of-the-run") == std::string::npos) continue;
@@ -75,12 +75,12 @@ TEST_CASE("rounds run in the world as it was, though it reads the files that are
 }
 
 TEST_CASE("a world that is the very model cannot prove its own repair") {
-  // The folder was run in a world that opened the lamp; the model is what the world is now.
+  // The folder was run in a world that opened the lamp; the model equals the world as it is now.
   const SharedFiles cli("model: [domain.e, start.e]\nsimulator: {model: [world/truth.e]}\n");
   json_of(cli, {"run", "pull.yaml", "--out", "out"}, 1);
   const auto report = json_of(cli, {"repair", "out", "--loop", "--out", "fixed"});
   CHECK(report.at("end") == "clean");
-  // A wrong change of what both read shows: in the copies, by hand, behind the loop.
+  // A wrong change of a file that both read shows: in the copies, by hand, outside of the loop.
   const auto copy = cli.read("fixed/files/domain.e");
   cli.replace("fixed/files/domain.e", "Initiates(Pull(),Open(),time)",
               "Terminates(Pull(),Open(),time)");

@@ -71,7 +71,7 @@ class Project {
     }
   }
 
-  /// `parallax suite ../m ARGUMENTS...` in `work`: the exit code, the outcome and what is wrong.
+  /// `parallax suite ../m ARGUMENTS...` in `work`: the exit code, the outcome and the problems.
   std::string suite(const std::vector<std::string>& arguments) const {
     std::vector<std::string> command = {CliFixture::program(), "suite", "../m", "--json", "-q"};
     command.insert(command.end(), arguments.begin(), arguments.end());
@@ -81,7 +81,7 @@ class Project {
     const auto json = Json::parse(result.out, nullptr, false);
     if (!json.is_object() || !json.contains("cases")) return result.err;
     const auto& one = json["cases"][0];
-    // Further problems tell what changed since a pass that was kept.
+    // Further problems describe the changes since a pass that was kept.
     const auto& problems = one["problems"];
     return std::to_string(result.code) + ' ' + one["outcome"].get<std::string>() + ' ' +
            (problems.empty() ? "" : problems[0].dump());

@@ -1,5 +1,5 @@
-// The workflows of docs/ci.md, step by step, in a scratch repository. What a service does itself is
-// played: a checkout is a clone, an artifact a copy. Steps called `install` are not run, as the
+// The workflows of docs/ci.md, step by step, in a scratch repository. The parts of a service are
+// simulated: a checkout is a clone, an artifact a copy. Steps called `install` are not run, as the
 // program is there.
 
 #include <doctest/doctest.h>
@@ -134,7 +134,7 @@ class Checkouts : public TwoModels {
   std::map<std::string, std::string> page_ = files_of_page();
 };
 
-/// `${{ name }}` replaced; a name that is none fails the test.
+/// Replaces every `${{ name }}`; a name that the context lacks fails the test.
 std::string filled_in(std::string text, const Settings& context) {
   for (auto at = text.find("${{ "); at != std::string::npos; at = text.find("${{ ")) {
     const auto end = text.find(" }}", at);

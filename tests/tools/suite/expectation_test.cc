@@ -1,4 +1,4 @@
-// What documents of runs, rates and explanations say against an expectation.
+// Documents of runs, rates and explanations, judged by an expectation.
 
 #include "tools/suite/expectation.h"
 

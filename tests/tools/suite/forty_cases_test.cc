@@ -1,5 +1,5 @@
-// A repository of forty cases: what a mistake turns red and what is said of it, a shard that was
-// killed, and suites that were killed at random moments.
+// A repository of forty cases: the cases that a mistake turns red and their reports, a shard that
+// was killed, and suites that were killed at random moments.
 
 #include <doctest/doctest.h>
 
@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::json;
 using Names = std::set<std::string>;
 
-/// What a suite says of each case that did not pass.
+/// Problems of each case that did not pass, by the case's name.
 std::map<std::string, std::string> red_cases(const Json& document) {
   std::map<std::string, std::string> out;
   for (const auto& one : document["cases"]) {
@@ -41,7 +41,7 @@ Names scenarios(const std::string& folder, const Names& names) {
   return out;
 }
 
-/// A mistake in a model, the cases that notice it, and what is said of each of them.
+/// A mistake in a model, the cases that notice it, and the words in their reports.
 struct Mistake {
   std::string file, right, wrong;
   Names red;
@@ -87,7 +87,7 @@ TEST_CASE("a mistake in a model turns exactly those cases red that depend on it,
        scenarios("drawers",
                  {"agree", "agree_loosely", "agree_always", "sticks", "sticks_by_chance"}),
        {"CloseDrawer(top)", "Parked()", "+ repository/drawers/opens.e:4"}},
-      // The mistake of the model mended: what was expected to go wrong cannot be begun.
+      // The model's mistake is mended: the failure that a case expects cannot occur any more.
       {"boxes/wrong_domain.e",
        "[time] Initiates(PickUp(),Holding(),time).\n",
        "[region,time] HoldsAt(RobotIn(region),time) & HoldsAt(BoxIn(region),time) ->\n"
@@ -138,7 +138,7 @@ TEST_CASE("what is to blame is named with its line") {
   CHECK(holds(rate, "180 times: CloseDrawer(top): Parked()"));
 }
 
-/// Ends a suite by SIGKILL after so many looks, of a few milliseconds each.
+/// Ends a suite by SIGKILL after the given number of looks, a few milliseconds apart.
 ProcessOptions killed_after(int looks) {
   ProcessOptions options;
   options.signal_when = [looks]() mutable { return looks-- == 0 ? SIGKILL : 0; };

@@ -1,4 +1,4 @@
-// What a red case says of the changes since it passed: the trace that was lost or gained, the
+// Report of a red case on the changes since it passed: the trace that was lost or gained, the
 // axioms against it, the edit. As real processes.
 
 #include <doctest/doctest.h>
@@ -47,7 +47,7 @@ class Shop : public CliFixture {
     more.insert(more.begin(), {"suite", "shop"});
     return parallax(std::move(more));
   }
-  /// What is said of the one case.
+  /// Problems reported for the one case.
   std::string problems(const std::string& id, std::vector<std::string> more = {}) const {
     more.insert(more.end(), {"--only", id, "--json"});
     const auto result = suite(std::move(more));
@@ -80,7 +80,7 @@ TEST_CASE("a case with a number of traces names one that was lost, the axiom and
   for (const auto& at : fs::directory_iterator(cli.folder() / "out/suite")) {
     CHECK_FALSE(at.path().filename().string().starts_with("since-"));
   }
-  // It stands in the report, and once mended nothing is said.
+  // The report contains it; once mended, nothing is reported.
   CHECK(cli.suite({"--junit", "r.xml"}).code == 1);
   CHECK(holds(cli.read("r.xml"), "since it passed last"));
   cli.replace("shop/parts/till.e", "[time] !Happens(Pay(Bob),time).\n", "");

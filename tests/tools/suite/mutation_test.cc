@@ -71,7 +71,8 @@ TEST_CASE("what a number of traces does not tell, and a list of them does") {
 TEST_CASE("mutants with the same traces are proved equivalent, up to the horizon of the cases") {
   const SuiteFixture cli;
   write_cases(cli, true);
-  // What is on is pressed on: nothing new. And at horizon 1 nothing is on before it is pressed.
+  // Pressing a lamp that is on changes nothing, and at horizon 1 no lamp is on before it is
+  // pressed.
   cli.write("s/lamp.e",
             std::string(kLamp) + "[time] HoldsAt(On(),time) -> Initiates(Press(),On(),time).\n");
   const auto score = json_of(cli, {"suite", "s", "--mutate"}, 0);

@@ -16,7 +16,7 @@ bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// The drawer that sticks every other time, expecting `what`.
+/// The drawer that sticks every other time, with the given expectation.
 class Sticking : public TwoModels {
  public:
   void expect(const std::string& what) const {
@@ -25,7 +25,7 @@ class Sticking : public TwoModels {
           "expect: " +
               what + "\n");
   }
-  /// What the suite says of it; empty if it passes.
+  /// Problems that the suite reports for the expectation; empty if it passes.
   std::string problems(const std::string& what) const {
     expect(what);
     const auto result = parallax({"suite", "two/case.yaml", "--json", "--no-cache"});

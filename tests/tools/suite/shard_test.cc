@@ -45,7 +45,7 @@ TEST_CASE("every case is in exactly one shard, and the shards are of like size")
 }
 
 TEST_CASE("a case keeps its shard from version to version") {
-  // Computed with an independent FNV-1a: what CI has split once stays split alike.
+  // Computed with an independent FNV-1a: once CI has split a suite, it is always split alike.
   CHECK(shard_of("yale_shooting", 5) == 4);
   CHECK(shard_of("stuffy_room", 5) == 5);
   CHECK(shard_of("coin_toss", 5) == 1);
@@ -76,7 +76,7 @@ TEST_CASE("the environment says which part this is") {
   CHECK(chosen("env", {{"CI_NODE_INDEX", "x"}, {"CI_NODE_TOTAL", "3"}}).empty());
   CHECK(chosen("env", {{"CI_NODE_INDEX", "1"}}).empty());
   CHECK(chosen("env", {}).empty());
-  // What the job itself says goes first, then the cluster it runs on.
+  // The job's own variables come first, then those of the cluster it runs on.
   CHECK(chosen("env", {{"PARALLAX_SHARD_INDEX", "1"},
                        {"PARALLAX_SHARD_TOTAL", "2"},
                        {"SLURM_ARRAY_TASK_ID", "7"},
@@ -100,7 +100,7 @@ TEST_CASE("a job array may count from any number in any steps, but without gaps"
   CHECK(task("11", "4", "10", "40", "10").empty());
   CHECK(task("1", "0", "1", "4", "1").empty());
   CHECK(task("", "", "", "", "").empty());
-  // A task of a larger array that was submitted again by itself is no whole.
+  // A single task of a larger array that was submitted again is not a whole array.
   CHECK(task("3", "1", "3", "3", "1").empty());
   CHECK(task("2", "1", "2", "2", "1").empty());
   CHECK(chosen("env", {{"SLURM_ARRAY_TASK_ID", "3"}, {"SLURM_ARRAY_TASK_COUNT", "1"}}).empty());

@@ -1,4 +1,4 @@
-// What looks like a case is a case or an error, never passed over.
+// A file that looks like a case is a case or an error, never passed over.
 
 #include "tools/suite/suite_case.h"
 

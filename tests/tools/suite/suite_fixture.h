@@ -59,8 +59,8 @@ inline bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// A JUnit report without what differs between two runs of a suite although nothing has changed:
-/// times, and whether a result was taken over.
+/// A JUnit report without the parts that differ between two runs of an unchanged suite: times, and
+/// whether a result was taken over.
 inline std::string without_times(std::string junit) {
   static const std::regex time(R"( (time|timestamp)="[^"]*")");
   static const std::regex reused(" *<system-out>(cached|resumed)</system-out>\n");

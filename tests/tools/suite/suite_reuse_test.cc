@@ -212,7 +212,7 @@ TEST_CASE("a share of the cached passes is run all the same, and must answer the
   CHECK(caught.code == 1);
   CHECK(caught.out == "1 passed, 0 failed, 1 without an answer, 1 not run again\n");
   CHECK(holds(caught.err, "are not the same bytes"));
-  // Each time those that nobody has looked at for the longest time: the other one now.
+  // Each time the results that were checked longest ago are checked: the other one now.
   CHECK(cli.suite({"--verify-cache", "50%"}).code == 1);
   CHECK(cli.suite({"--verify-cache", "100%"}).code == 0);
 }
