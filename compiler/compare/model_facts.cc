@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 
+#include "compiler/base/words.h"
 #include "compiler/compare/canonical_formula.h"
 #include "compiler/syntax/parser.h"
 #include "compiler/syntax/printer.h"
@@ -133,9 +134,7 @@ void declare_names(std::vector<Fact>& out, const std::string& kind,
   }
 }
 
-std::string clause_count(std::size_t count) {
-  return " (" + std::to_string(count) + (count == 1 ? " clause)" : " clauses)");
-}
+std::string clause_count(std::size_t count) { return " (" + base::counted(count, "clause") + ")"; }
 
 }  // namespace
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compiler/base/codes/plans.h"
+#include "compiler/base/words.h"
 #include "compiler/interpreter/plan_machine.h"
 #include "compiler/interpreter/unit_arguments.h"
 
@@ -122,9 +123,7 @@ PlanMachine::Step PlanMachine::call_value(PlanState& state, const PlanInstructio
 
 namespace {
 
-std::string count_text(std::size_t count) {
-  return fmt::format("{} argument{}", count, count == 1 ? "" : "s");
-}
+std::string count_text(std::size_t count) { return base::counted(count, "argument"); }
 
 }  // namespace
 

@@ -12,6 +12,7 @@
 #include "compiler/base/codes/grounding.h"
 #include "compiler/base/codes/names.h"
 #include "compiler/base/codes/plans.h"
+#include "compiler/base/words.h"
 #include "compiler/cnf/encoder.h"
 #include "compiler/ground/formula_grounder.h"
 #include "compiler/ground/grounder.h"
@@ -79,7 +80,7 @@ void set_horizon(const PlanGraph& graph, std::int64_t max_horizon, TypedModel& m
 
 std::string counted_arguments(std::size_t count) {
   if (count == 0) return "no arguments";
-  return fmt::format("{} argument{}", count, count == 1 ? "" : "s");
+  return base::counted(count, "argument");
 }
 
 /// Reports why `entry` names no event of the model: a symbol of another kind, another number of

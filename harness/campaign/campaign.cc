@@ -9,6 +9,7 @@
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/contract.h"
 #include "compiler/base/hash.h"
+#include "compiler/base/words.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/repetition.h"
 #include "harness/campaign/run_setup.h"
@@ -217,7 +218,7 @@ class Campaign {
     std::string text;
     if (simulated < all) {
       text = fmt::format("{} of {} traces {} not simulated; ", all - simulated, all,
-                         all - simulated == 1 ? "was" : "were");
+                         base::agreed(all - simulated, "was", "were"));
     }
     if (found == "all traces explored") return text + "the solver finds no other trace";
     if (found == "complete up to bound") {

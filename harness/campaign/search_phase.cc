@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/base/words.h"
 #include "harness/campaign/sample_margin.h"
 #include "harness/sampling/law_draw.h"
 
@@ -182,7 +183,7 @@ base::Result<SearchOutcome> search_trace(Trial& trial, const SearchSpec& spec,
 }
 
 std::string search_text(const SearchResult& result, std::int64_t trace) {
-  auto text = fmt::format("{} simulation{} by {}, {}", result.runs, result.runs == 1 ? "" : "s",
+  auto text = fmt::format("{} by {}, {}", base::counted(result.runs, "simulation"),
                           to_string(result.spec.strategy),
                           result.found ? "the last one a discrepancy" : "no discrepancy");
   if (result.invalid > 0) text += fmt::format("; {} invalid starts", result.invalid);

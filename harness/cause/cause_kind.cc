@@ -7,6 +7,7 @@
 #include <map>
 
 #include "compiler/base/shown_text.h"
+#include "compiler/base/words.h"
 
 namespace parallax::harness {
 namespace {
@@ -33,9 +34,7 @@ std::string share(std::int64_t part, std::int64_t whole) {
   return fmt::format("{} % of the", std::lround(percent));
 }
 
-std::string runs_text(std::int64_t count) {
-  return fmt::format("{} run{}", count, count == 1 ? "" : "s");
-}
+std::string runs_text(std::int64_t count) { return base::counted(count, "run"); }
 
 /// "Again from the failing start: with 5 other seeds of the simulator in 5, with half ...".
 std::string persistence_words(const CauseFinding& finding) {

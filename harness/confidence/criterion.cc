@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "compiler/base/contract.h"
+#include "compiler/base/words.h"
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/criterion_spec.h"
 #include "harness/confidence/rounding.h"
@@ -15,16 +16,12 @@
 namespace parallax::harness {
 namespace {
 
-std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
 std::string runs_text(const Tally& tally) {
-  const auto clean = counted(tally.clean(), "clean run", "clean runs");
+  const auto clean = base::counted(tally.clean(), "clean run", "clean runs");
   if (tally.lost() == 0) return fmt::format("{} of {}", clean, tally.runs());
   return fmt::format("{} of {}, {} counted as {}", clean, tally.runs(),
-                     counted(tally.lost(), "lost run", "lost runs"),
-                     tally.lost() == 1 ? "a failure" : "failures");
+                     base::counted(tally.lost(), "lost run", "lost runs"),
+                     base::agreed(tally.lost(), "a failure", "failures"));
 }
 
 std::string rejected_text(const Tally& tally) {
@@ -205,7 +202,7 @@ std::string claim_about(const Tally& tally, const CriterionSpec& spec, std::stri
                         std::string_view does) {
   if (tally.mismatch() > 0) {
     return fmt::format("{} of {} gave a discrepancy", tally.mismatch(),
-                       counted(tally.runs(), "run", "runs"));
+                       base::counted(tally.runs(), "run", "runs"));
   }
   const auto bound = stated_bound(tally, spec);
   if (tally.clean() == 0 || bound.epsilon >= 1.0 || bound.confidence_level <= 0.0) {
@@ -281,7 +278,7 @@ std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec,
   if (tally.lost() > 0) {
     const auto bound = stated_bound(tally, spec);
     auto text = fmt::format("{} (crash, hang or invalid numbers), counted as discrepancies",
-                            counted(tally.lost(), "run was lost", "runs were lost"));
+                            base::counted(tally.lost(), "run was lost", "runs were lost"));
     if (bound.confidence_level < spec.confidence_level) {
       text += fmt::format(
           "; the stated confidence is {} instead of {}, as the runs may end with either of two "

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "compiler/base/contract.h"
+#include "compiler/base/words.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/rounding.h"
 
@@ -81,10 +82,10 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
                                "discrepancy ",
                              claimed, all);
   const bool as_planned = spec.kind != CriterionKind::kPaper && worst.epsilon <= spec.epsilon;
-  const auto lost_text =
-      lost == 0 ? std::string()
-                : fmt::format(", {} lost {} counted as {}", lost, lost == 1 ? "run" : "runs",
-                              lost == 1 ? "a failure" : "failures");
+  const auto lost_text = lost == 0
+                             ? std::string()
+                             : fmt::format(", {} counted as {}", base::counted(lost, "lost run"),
+                                           base::agreed(lost, "a failure", "failures"));
   auto text = fmt::format(
       "with {} confidence, {}fewer than {} of {}start states {} give a discrepancy {} ({} "
       "clean {} of {}{}){}",
@@ -92,7 +93,7 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
       percent_up(as_planned ? spec.epsilon : worst.epsilon), rejected ? "valid " : "",
       drawn_from(all == 1 ? "the start region" : "its start region", drawn),
       comparison == Comparison::kFinal ? "in the last state" : "at any step", clean,
-      clean == 1 ? "run" : "runs", runs, lost_text, kSupposition);
+      base::agreed(clean, "run", "runs"), runs, lost_text, kSupposition);
   if (!scope.completeness.empty()) text += "; " + scope.completeness;
   if (scope.split_initial) {
     text += "; each initial state that leads to the same events counts as a trace";

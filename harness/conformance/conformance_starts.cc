@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/base/words.h"
 #include "harness/conformance/conformance_run.h"
 
 // Checks of starts: those that must be taken, and those that must be refused.
@@ -129,9 +130,9 @@ void Conformance::check_resets() {
          "time passes between requests, or observing changes something: " + drift.where);
   }
   if (starts_.empty()) return skip(now_, "no start is known");
-  say(now_,
-      fmt::format("{} start{}, largest deviation {:.3g}", std::min<std::size_t>(2, starts_.size()),
-                  starts_.size() == 1 ? "" : "s", report_.largest_deviation));
+  say(now_, fmt::format("{}, largest deviation {:.3g}",
+                        base::counted(std::min<std::int64_t>(2, std::ssize(starts_)), "start"),
+                        report_.largest_deviation));
 }
 
 /// Checks that a start which the simulator cannot take is refused. check_invalid_starts tries a

@@ -4,6 +4,7 @@
 
 #include "compiler/base/json.h"
 #include "compiler/base/shown_text.h"
+#include "compiler/base/words.h"
 #include "harness/conformance/conformance.h"
 
 namespace parallax::harness {
@@ -26,10 +27,6 @@ std::string indented(std::string text) {
     text.replace(at, 1, "\n      ");
   }
   return text;
-}
-
-std::string counted(std::size_t count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
 constexpr std::pair<const char*, std::string SupportedClaims::*> kClaimRows[] = {
@@ -78,8 +75,8 @@ std::string conformance_text(const ConformanceReport& report, const std::string&
     text += fmt::format("  {:<23} {}\n", name, base::printable(report.claims.*member));
   }
   const auto faults = report.faults();
-  text += fmt::format("\n{}, {}{}\n", faults == 0 ? "no fault" : counted(faults, "fault"),
-                      counted(report.findings.size() - faults, "warning"),
+  text += fmt::format("\n{}, {}{}\n", faults == 0 ? "no fault" : base::counted(faults, "fault"),
+                      base::counted(report.findings.size() - faults, "warning"),
                       report.complete ? "" : "; it was given up before the end");
   return text;
 }

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "compiler/base/words.h"
 #include "harness/engine/mujoco_module.h"
 #include "harness/engine/world_check.h"
 
@@ -24,14 +25,6 @@ std::optional<WorldSpec> with_other_engine(WorldSpec spec) {
   return spec;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string out;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    out += fmt::format("{}{}", i == 0 ? "" : i + 1 == names.size() ? " and " : ", ", names[i]);
-  }
-  return out;
-}
-
 }  // namespace
 
 std::string solver_loss_words(const std::string& body, double margin,
@@ -45,8 +38,8 @@ std::string solver_loss_words(const std::string& body, double margin,
   auto words = fmt::format(
       "{}: `{}` left a grip that by Coulomb's law holds {:.1f} times what it has to; with {} it "
       "stays",
-      kOfTheSolver, body, margin, listed(keep));
-  if (!lose.empty()) words += fmt::format(", with {} it leaves as well", listed(lose));
+      kOfTheSolver, body, margin, base::listed(keep));
+  if (!lose.empty()) words += fmt::format(", with {} it leaves as well", base::listed(lose));
   return words;
 }
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "compiler/base/words.h"
 #include "tools/app/coverage_plan.h"
 #include "tools/app/trace_check.h"
 
@@ -12,17 +13,13 @@ using compiler::TypedFormulaId;
 
 namespace {
 
-/// A statement on one line, as in the file; long ones are cut.
-std::string one_line(std::string_view text) {
+/// A statement on one line, cut after 100 characters.
+std::string short_line(std::string_view text) {
   constexpr std::size_t kMost = 100;
-  std::string out;
-  for (const char c : text) {
-    const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
-    if (!blank) out += c;
-    if (blank && !out.empty() && out.back() != ' ') out += ' ';
-    if (out.size() > kMost) return out + "...";
-  }
-  return out;
+  auto out = base::one_line(text);
+  if (out.size() <= kMost) return out;
+  out.resize(kMost);
+  return out + "...";
 }
 
 }  // namespace
@@ -65,7 +62,7 @@ std::optional<CoverageKey> ModelCoverage::event(std::string_view name) const {
 }
 
 std::string ModelCoverage::text(const base::SourceRange& range) const {
-  return one_line(files_.text(range));
+  return short_line(files_.text(range));
 }
 
 CoverageKey ModelCoverage::event(const compiler::Symbol& symbol) const {

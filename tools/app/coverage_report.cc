@@ -9,6 +9,7 @@
 
 #include "compiler/base/json.h"
 #include "compiler/base/shown_text.h"
+#include "compiler/base/words.h"
 #include "harness/confidence/rounding.h"
 
 namespace parallax::tools {
@@ -118,7 +119,7 @@ void add_differences(const Coverage& coverage, std::string& out) {
     out += fmt::format("    {}{}{} {}: {}{}{} ({} execution{}, the first 1.{})\n", one.place,
                        one.place.empty() ? "" : "  ", one.event, one.outcome, lacking_text(one),
                        one.fluents.empty() ? "" : "; observed: ", fmt::join(one.fluents, ", "),
-                       one.runs, one.runs == 1 ? "" : "s", one.example);
+                       one.runs, base::agreed(one.runs, "", "s"), one.example);
   }
   more(lacking.size());
 }
@@ -218,9 +219,8 @@ class LcovRecord {
 }  // namespace
 
 std::string coverage_text(const Coverage& coverage) {
-  auto out =
-      fmt::format("{} run{}, {} simulation{}\n", coverage.runs, coverage.runs == 1 ? "" : "s",
-                  coverage.simulations, coverage.simulations == 1 ? "" : "s");
+  auto out = fmt::format("{}, {}\n", base::counted(coverage.runs, "run"),
+                         base::counted(coverage.simulations, "simulation"));
   for (const auto& scenario : coverage.scenarios)
     out += fmt::format("  scenario  {}\n", base::printable(scenario));
   for (std::size_t i = 0; i < kCoverageGroups.size(); ++i) {

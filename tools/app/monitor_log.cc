@@ -10,6 +10,7 @@
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/suggest.h"
 #include "compiler/base/utf8.h"
+#include "compiler/base/words.h"
 #include "harness/monitor/line_source.h"
 #include "harness/monitor/log_entry.h"
 #include "tools/app/monitor.h"
@@ -230,8 +231,8 @@ class LogWatcher {
     result_.verdict = MonitorVerdict::kUndecided;
     result_.first = first.place;
     result_.undecided_because =
-        fmt::format("`{}` is begun and no `event` ends it: {} later observation{} not compared",
-                    first.event, count, count == 1 ? " was" : "s were");
+        fmt::format("`{}` is begun and no `event` ends it: {} not compared", first.event,
+                    base::counted(count, "later observation was", "later observations were"));
   }
 
   bool note(Admission admission, const MonitorPlace& place) {

@@ -4,6 +4,7 @@
 
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/json.h"
+#include "compiler/base/words.h"
 #include "tools/app/monitor.h"
 
 namespace parallax::tools {
@@ -13,11 +14,6 @@ using Json = nlohmann::ordered_json;
 
 /// Number of fluents and plan steps that are spelled out in the text.
 constexpr std::size_t kMostShown = 8;
-
-template <typename Count>
-std::string counted(Count count, const std::string& noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
 
 std::string value_text(const harness::Value& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return fmt::format("\"{}\"", *text);
@@ -144,11 +140,11 @@ std::string monitor_text(const MonitorResult& result) {
   out += fmt::format(
       "{}: {} ({} compared",
       result.failed ? "consistent as far as the log can be read" : to_string(result.verdict),
-      counted(result.observations, "observation"), result.compared);
+      base::counted(result.observations, "observation"), result.compared);
   if (result.under_way > 0)
     out += fmt::format(", {} while an action was under way", result.under_way);
-  out += fmt::format("), {}; at most {} possible at once", counted(result.events, "step"),
-                     counted(result.most_states, "state"));
+  out += fmt::format("), {}; at most {} possible at once", base::counted(result.events, "step"),
+                     base::counted(result.most_states, "state"));
   if (result.states) out += fmt::format(", {} at last", *result.states);
   out += "\n";
   for (const auto& action : result.unended) {
@@ -175,10 +171,12 @@ std::string monitor_text(const std::vector<MonitorResult>& runs) {
     out += first_text(run);
   }
   if (unchecked > 0)
-    out += fmt::format("not checked: {}, as it was stopped\n", counted(unchecked, "simulation"));
+    out +=
+        fmt::format("not checked: {}, as it was stopped\n", base::counted(unchecked, "simulation"));
   return out + fmt::format("{}: {} of {} {} consistent with the model\n",
                            to_string(verdict_of(runs)), consistent,
-                           counted(runs.size(), "simulation"), runs.size() == 1 ? "is" : "are");
+                           base::counted(runs.size(), "simulation"),
+                           base::agreed(std::ssize(runs), "is", "are"));
 }
 
 std::string monitor_json(const MonitorResult& result, const std::string& scenario) {

@@ -3,28 +3,12 @@
 #include <algorithm>
 
 #include "compiler/base/codes/campaigns.h"
+#include "compiler/base/words.h"
 #include "compiler/reference/temporal_truth.h"
 #include "tools/app/trace_check.h"
 
 namespace parallax::tools {
-namespace {
-
-/// On one line, blanks around it left out.
-std::string one_line(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    const bool blank = c == ' ' || c == '\n' || c == '\t' || c == '\r';
-    if (!blank) {
-      out += c;
-    } else if (!out.empty() && out.back() != ' ') {
-      out += ' ';
-    }
-  }
-  while (!out.empty() && out.back() == ' ') out.pop_back();
-  return out;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 std::optional<PropertyBreak> PropertyCheck::broken(const runtime::Trace& trace) {
   compiler::ReferenceLimits limits;
@@ -53,7 +37,7 @@ std::optional<PropertyBreak> PropertyCheck::broken(const runtime::Trace& trace) 
   }
   const auto why = truth.why_false(formula, found - values.begin(), time, valuation);
   if (refused()) return std::nullopt;
-  return PropertyBreak{one_line(context_.files().text(why.formula)), why.at, why.text};
+  return PropertyBreak{base::one_line(context_.files().text(why.formula)), why.at, why.text};
 }
 
 }  // namespace parallax::tools

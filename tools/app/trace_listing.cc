@@ -5,6 +5,7 @@
 
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/words.h"
 #include "runtime/trace/csv_format.h"
 #include "runtime/trace/itf_format.h"
 #include "tools/app/trace_listing.h"
@@ -68,8 +69,8 @@ class ItfFolder final : public runtime::ListFormat {
     if (failed_) known = {written_, false, "stopped", {}, {}};
     if (!failed_) write("index.json", format_.end(known));
     if (failed_ && written_ == 0) return {};  // the error says it
-    return fmt::format("{} {}, {}{}, in {}\n", known.traces, known.traces == 1 ? "trace" : "traces",
-                       known.exploration, known.remark, folder_.string());
+    return fmt::format("{}, {}{}, in {}\n", base::counted(known.traces, "trace"), known.exploration,
+                       known.remark, folder_.string());
   }
 
  private:

@@ -5,6 +5,7 @@
 
 #include "compiler/base/codes/files.h"
 #include "compiler/base/json.h"
+#include "compiler/base/words.h"
 #include "tools/app/consequences.h"
 #include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
@@ -165,12 +166,11 @@ std::string text_of(const Abduction& found) {
     }
     out += '\n';
   }
-  out += fmt::format("{} explanation{}{}\n", number, number == 1 ? "" : "s",
+  out += fmt::format("{}{}\n", base::counted(number, "explanation"),
                      found.complete ? ", complete" : "");
   if (found.possible_only > 0) {
-    out += fmt::format(
-        "{} further set{} of events may be followed by it, but need not: something else is open\n",
-        found.possible_only, found.possible_only == 1 ? "" : "s");
+    out += fmt::format("{} of events may be followed by it, but need not: something else is open\n",
+                       base::counted(found.possible_only, "further set"));
   }
   return out;
 }

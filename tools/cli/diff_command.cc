@@ -7,6 +7,7 @@
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
+#include "compiler/base/words.h"
 #include "tools/cli/command.h"
 #include "tools/cli/diff_gate.h"
 #include "tools/diff/model_difference.h"
@@ -251,9 +252,9 @@ int diff_trace_files(const DiffOptions& options, Invocation& invocation) {
       {"gained", side_json(gained)}};
   out.fields = "\"traces\":" + base::json_text(document);
   for (const auto* set : {&*before, &*after}) {
-    out.text += fmt::format("{}: {} {}{}\n", set->name, set->traces.size(),
-                            set->traces.size() == 1 ? "trace" : "traces",
-                            set->complete ? "" : ", not known to be all");
+    out.text +=
+        fmt::format("{}: {}{}\n", set->name, base::counted(std::ssize(set->traces), "trace"),
+                    set->complete ? "" : ", not known to be all");
   }
   out.text += side_text("lost", *before, *after, lost, options.stat);
   out.text += side_text("gained", *after, *before, gained, options.stat);

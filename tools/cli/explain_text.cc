@@ -6,6 +6,7 @@
 
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/json.h"
+#include "compiler/base/words.h"
 #include "harness/report/text_layout.h"
 
 namespace parallax::tools {
@@ -26,10 +27,6 @@ using nlohmann::ordered_json;
 using runtime::ProofVerdict;
 
 constexpr std::size_t kShownInstances = 6;  // of one axiom, in text
-
-std::string counted(std::size_t count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
 
 bool is_smallest(const runtime::MinimalSets& found) {
   return found.proven && (found.sets.empty() || found.lower_bound == 0 ||
@@ -83,17 +80,18 @@ std::string shortened(const std::string& instance) {
 
 std::string contradiction_head(const runtime::MinimalSets& found, const SetOptions& options,
                                const ObservedRun* run, bool verbose) {
-  return fmt::format(
-      "The model has no trace{}; {} of axioms that contradict {} ({}):\n{}",
-      run != nullptr ? " in which this happens" : "", counted(found.sets.size(), "minimal set"),
-      run != nullptr ? "it" : "each other", claim(found, options), observed_text(run, verbose));
+  return fmt::format("The model has no trace{}; {} of axioms that contradict {} ({}):\n{}",
+                     run != nullptr ? " in which this happens" : "",
+                     base::counted(found.sets.size(), "minimal set"),
+                     run != nullptr ? "it" : "each other", claim(found, options),
+                     observed_text(run, verbose));
 }
 
 std::string contradiction_text(const compiler::CompiledModel& model, std::size_t number,
                                const Contradiction& set, Instances shown,
                                const std::string& words) {
-  auto out = fmt::format("set {}: {} (proof {}{})\n", number, counted(set.axioms.size(), "axiom"),
-                         proof_word(set.proof),
+  auto out = fmt::format("set {}: {} (proof {}{})\n", number,
+                         base::counted(set.axioms.size(), "axiom"), proof_word(set.proof),
                          set.instances_minimal ? "" : "; instances not minimal: stopped");
   if (!words.empty()) out += harness::wrapped("  ", words, 2);
   for (const auto& axiom : set.axioms) {
@@ -108,7 +106,7 @@ std::string contradiction_text(const compiler::CompiledModel& model, std::size_t
     }
     if (instances.size() > kShownInstances) {
       out += fmt::format("      ... and {}\n",
-                         counted(instances.size() - kShownInstances, "further instance"));
+                         base::counted(instances.size() - kShownInstances, "further instance"));
     }
   }
   return out;
@@ -238,14 +236,12 @@ std::string run_contradictions_json(const RecordedDiscrepancy& found,
 std::string cause_text(const CauseEvidence& cause) {
   auto out = cause.words();
   if (cause.otherwise > 0) {
-    out += fmt::format(" {} went otherwise and {} left out.",
-                       counted(static_cast<std::size_t>(cause.otherwise), "run"),
-                       cause.otherwise == 1 ? "is" : "are");
+    out += fmt::format(" {} went otherwise and {} left out.", base::counted(cause.otherwise, "run"),
+                       base::agreed(cause.otherwise, "is", "are"));
   }
   if (cause.further > 0) {
     out += fmt::format(" {} made for this.",
-                       cause.further == 1 ? "1 further run was"
-                                          : fmt::format("{} further runs were", cause.further));
+                       base::counted(cause.further, "further run was", "further runs were"));
   }
   if (!cause.not_made.empty()) out += fmt::format(" No further runs: {}.", cause.not_made);
   return harness::wrapped("", out, 0);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/base/json.h"
+#include "compiler/base/words.h"
 #include "harness/confidence/rounding.h"
 #include "harness/geometry_proof/proof_assumptions.h"
 
@@ -30,7 +31,7 @@ std::string boxes_text(const harness::TestCertificate& test, harness::BoxVerdict
     for (const auto& one : box.bounds) volume *= one.upper - one.lower;
     if (!box.culprit.empty()) culprits[box.culprit] += volume;
   }
-  std::string text = fmt::format("{} box{}", boxes, boxes == 1 ? "" : "es");
+  std::string text = base::counted(boxes, "box", "boxes");
   const auto most =
       std::max_element(culprits.begin(), culprits.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });

@@ -7,6 +7,7 @@
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/words.h"
 #include "compiler/base/write_gate.h"
 #include "harness/campaign/campaign.h"
 #include "harness/report/report.h"
@@ -229,7 +230,7 @@ void warn_of_reused_starts(const harness::CampaignOptions& campaign,
   const auto more = earlier.size() - 1;
   const auto name = more == 0 ? earlier.front()
                               : fmt::format("{} (and {} other {})", earlier.front(), more,
-                                            more == 1 ? "run" : "runs");
+                                            base::agreed(more, "run", "runs"));
   sink.warning(codes::kStartsReused, base::SourceRange{scenario.source, 0, 0}, name);
 }
 

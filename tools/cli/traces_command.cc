@@ -4,6 +4,7 @@
 
 #include "compiler/base/codes/files.h"
 #include "compiler/base/json.h"
+#include "compiler/base/words.h"
 #include "runtime/trace/trace.h"
 #include "tools/app/best_traces.h"
 #include "tools/app/certify.h"
@@ -89,9 +90,9 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
                     writer.count(), complete, fields, writer.checked_field(), ending.exploration,
                     runtime::model_hash(model), timing));
   } else {
-    invocation.result(fmt::format(
-        "{} {}{}, {}{}{}\n", writer.count(), writer.count() == 1 ? "trace" : "traces", in_all,
-        ending.exploration, certifier.remark(ending.exploration), writer.checked_remark()));
+    invocation.result(fmt::format("{}{}, {}{}{}\n", base::counted(writer.count(), "trace"), in_all,
+                                  ending.exploration, certifier.remark(ending.exploration),
+                                  writer.checked_remark()));
     if (best != nullptr) invocation.result(best->text());
   }
 }
@@ -256,10 +257,9 @@ int replay(const TracesOptions& options, Invocation& invocation) {
                                              {"list", std::move(list)}};
     invocation.document(base::json_text(document) + '\n');
   } else {
-    invocation.result(fmt::format("{} {} replayed, {}: {} agree, {} fail, {} checked\n",
-                                  result->seen, result->seen == 1 ? "trace" : "traces",
-                                  result->finished ? "complete" : "stopped", agree, result->failed,
-                                  result->checked));
+    invocation.result(fmt::format(
+        "{} replayed, {}: {} agree, {} fail, {} checked\n", base::counted(result->seen, "trace"),
+        result->finished ? "complete" : "stopped", agree, result->failed, result->checked));
   }
   if (!result->sound) return 5;
   if (result->failed > 0) return 1;

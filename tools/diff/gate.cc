@@ -8,6 +8,7 @@
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/json.h"
 #include "compiler/base/markdown.h"
+#include "compiler/base/words.h"
 #include "tools/diff/trace_set.h"
 
 namespace parallax::tools {
@@ -85,11 +86,12 @@ std::string gate_summary(const GateReport& report) {
   std::string out;
   if (broken > 0) {
     out = fmt::format("{} of {} rules {} broken", broken, report.rules.size(),
-                      broken == 1 ? "is" : "are");
+                      base::agreed(broken, "is", "are"));
   }
   if (open > 0) {
     out += fmt::format("{}{} {} not decidable{}", out.empty() ? "" : ", ", open,
-                       open == 1 ? "is" : "are", report.undecided_passes ? ", which passes" : "");
+                       base::agreed(open, "is", "are"),
+                       report.undecided_passes ? ", which passes" : "");
   }
   return out;
 }

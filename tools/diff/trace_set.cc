@@ -8,6 +8,7 @@
 #include <set>
 
 #include "compiler/base/file_io.h"
+#include "compiler/base/words.h"
 #include "runtime/trace/trace_reader.h"
 
 namespace parallax::tools {
@@ -124,8 +125,7 @@ std::string canonical_text(const TraceSet& set) {
   }
   std::string out;
   for (const auto& trace : traces) out += trace;
-  return out + fmt::format("{} {}, {}\n", set.traces.size(),
-                           set.traces.size() == 1 ? "trace" : "traces",
+  return out + fmt::format("{}, {}\n", base::counted(std::ssize(set.traces), "trace"),
                            set.complete ? "complete" : "not known to be complete");
 }
 

@@ -9,6 +9,7 @@
 #include "compiler/base/json.h"
 #include "compiler/base/shown_text.h"
 #include "compiler/base/temporary_folder.h"
+#include "compiler/base/words.h"
 #include "tools/app/version.h"
 #include "tools/doctor/build_facts.h"
 #include "tools/doctor/trials.h"
@@ -88,10 +89,10 @@ Diagnosis diagnose(const std::atomic<bool>& stop) {
 }
 
 std::string diagnosis_text(const Diagnosis& diagnosis) {
-  std::string text =
-      fmt::format("parallax {} (CaDiCaL {})\nbuilt by {}, {}, for {}\n{} {}\n\n", diagnosis.version,
-                  diagnosis.solver_version, diagnosis.compiler, diagnosis.build_type,
-                  diagnosis.system, diagnosis.cores, diagnosis.cores == 1 ? "core" : "cores");
+  std::string text = fmt::format("parallax {} (CaDiCaL {})\nbuilt by {}, {}, for {}\n{} {}\n\n",
+                                 diagnosis.version, diagnosis.solver_version, diagnosis.compiler,
+                                 diagnosis.build_type, diagnosis.system, diagnosis.cores,
+                                 base::agreed(diagnosis.cores, "core", "cores"));
   for (const auto& library : diagnosis.libraries) {
     text += fmt::format("  {:<20}  {}\n", library.name, library.version);
   }

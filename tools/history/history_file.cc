@@ -13,6 +13,7 @@
 #include "compiler/base/descriptor.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
+#include "compiler/base/words.h"
 
 namespace parallax::tools {
 namespace {
@@ -218,8 +219,9 @@ std::vector<std::string> remarks_on(const History& history, const std::string& p
   std::vector<std::string> out;
   if (!history.unreadable.empty()) {
     out.push_back(fmt::format("{}: line{} {} could not be read and {} passed over", path,
-                              history.unreadable.size() == 1 ? "" : "s", listed(history.unreadable),
-                              history.unreadable.size() == 1 ? "is" : "are"));
+                              base::agreed(std::ssize(history.unreadable), "", "s"),
+                              listed(history.unreadable),
+                              base::agreed(std::ssize(history.unreadable), "is", "are")));
   }
   if (history.half_written) {
     out.push_back(fmt::format("{}: the last line is half written and is passed over", path));

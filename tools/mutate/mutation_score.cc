@@ -18,6 +18,7 @@
 #include "compiler/base/path_gate.h"
 #include "compiler/base/sha256.h"
 #include "compiler/base/temporary_folder.h"
+#include "compiler/base/words.h"
 #include "tools/mutate/case_model.h"
 #include "tools/mutate/judged_mutants.h"
 
@@ -88,7 +89,7 @@ class SuiteMutation {
       score_.red.push_back(line_of(cases_[i], results_[i]));
     }
     if (score_.red.empty() && !context_.stopped()) {
-      say(fmt::format("the suite passes: {} case{}", cases_.size(), cases_.size() == 1 ? "" : "s"));
+      say("the suite passes: " + base::counted(std::ssize(cases_), "case"));
     }
     return score_.red.empty() && !context_.stopped();
   }

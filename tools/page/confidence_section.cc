@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/base/words.h"
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/rounding.h"
 #include "tools/page/markup.h"
@@ -133,8 +134,8 @@ namespace {
 
 /// Explains the counts of the curve and the certificate of the report.
 std::string caption(const PageData& page, const PageTrace& trace, const Curve& curve) {
-  auto out = fmt::format("{}: {} {}, {} not clean. ", stream_name(page, trace), curve.runs,
-                         curve.runs == 1 ? "run" : "runs", curve.failures);
+  auto out = fmt::format("{}: {}, {} not clean. ", stream_name(page, trace),
+                         base::counted(curve.runs, "run"), curve.failures);
   if (curve.aside > 0) {
     out +=
         fmt::format("Not counted: {} with starts that were chosen or searched for. ", curve.aside);

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "compiler/base/words.h"
 #include "harness/confidence/rounding.h"
 #include "tools/history/change_points.h"
 #include "tools/page/markup.h"
@@ -220,9 +221,9 @@ std::string history_page(const History& history, const std::string& file, double
   }
   const auto body = fmt::format(
       "<header class=\"top {}\"><p class=\"kicker\">parallax suite --history: {}</p><h1>{} "
-      "change{} in {} line{}</h1></header>\n{}<main id=\"main\">\n{}</main>\n",
-      changes > 0 ? "open" : "clean", html_short(file), changes, changes == 1 ? "" : "s",
-      history.lines.size(), history.lines.size() == 1 ? "" : "s", banners, parts);
+      "in {}</h1></header>\n{}<main id=\"main\">\n{}</main>\n",
+      changes > 0 ? "open" : "clean", html_short(file), base::counted(changes, "change"),
+      base::counted(std::ssize(history.lines), "line"), banners, parts);
   DocumentOptions options;
   options.style =
       ".tl td.v.clean{background:var(--clean-bg)}.tl td.v.bad{background:var(--bad-bg)}"

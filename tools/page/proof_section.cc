@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/base/words.h"
 #include "harness/confidence/rounding.h"
 #include "tools/page/markup.h"
 #include "tools/page/plot.h"
@@ -160,7 +161,7 @@ std::string began_text(const PageProofTest& test) {
     if (began.simulations == 0) continue;
     out += fmt::format("{}{} from {} boxes, of which {} {} not clean", out.empty() ? "" : "; ",
                        began.simulations, names[i], began.not_clean,
-                       began.not_clean == 1 ? "was" : "were");
+                       base::agreed(began.not_clean, "was", "were"));
   }
   return all == 0 ? "" : fmt::format("Dots are simulations of drawn starts: {}.", out);
 }

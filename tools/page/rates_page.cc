@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "compiler/base/words.h"
 #include "harness/campaign/run_setup.h"
 #include "harness/cause/failure_rule.h"
 #include "harness/confidence/clean_runs.h"
@@ -289,9 +290,9 @@ std::string rates_page(const harness::RatesResult& result,
   }
   auto body = fmt::format(
       "<header class=\"top {}\"><p class=\"kicker\">parallax rates: {}</p><h1>{} of {} runs give a "
-      "discrepancy</h1><p>{} {}, seed {}, {} compared{}</p></header>\n<main id=\"main\">\n",
+      "discrepancy</h1><p>{}, seed {}, {} compared{}</p></header>\n<main id=\"main\">\n",
       failures > 0 ? "bad" : "clean", html_short(result.scenario), failures, runs,
-      result.traces.size(), result.traces.size() == 1 ? "trace" : "traces", result.seed,
+      base::counted(std::ssize(result.traces), "trace"), result.seed,
       result.comparison == harness::Comparison::kFinal ? "last states" : "every step",
       result.complete ? "" : "; stopped before all runs were made");
   for (std::size_t i = 0; i < result.traces.size() && i < kMostRatedTraces; ++i) {

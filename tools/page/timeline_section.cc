@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "compiler/base/words.h"
 #include "tools/page/markup.h"
 #include "tools/page/sections.h"
 
@@ -101,7 +102,7 @@ std::string timeline_section(const PageData& page) {
           "<input type=\"checkbox\" class=\"all\" id=\"all-{0}\"><label for=\"all-{0}\">Show also "
           "{1} that {2} not change</label>\n",
           i, steady == 1 ? "the fluent" : fmt::format("the {} fluents", steady),
-          steady == 1 ? "does" : "do");
+          base::agreed(steady, "does", "do"));
     }
     out += fmt::format(
         "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Timeline of simulation "

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/base/words.h"
 #include "harness/report/text_layout.h"
 #include "tools/page/markup.h"
 #include "tools/page/sections.h"
@@ -229,8 +230,8 @@ std::string verdict_section(const PageData& page) {
     out += fact("Simulations", fmt::format("{}, executions of the plan", page.simulations));
     for (const auto& trace : page.traces) out += fact("Shown", trace.covered);
   } else {
-    out += fact("Simulations", fmt::format("{}, of {} {}", page.simulations, page.traces.size(),
-                                           page.traces.size() == 1 ? "trace" : "traces"));
+    out += fact("Simulations", fmt::format("{}, of {}", page.simulations,
+                                           base::counted(std::ssize(page.traces), "trace")));
     out +=
         fact("Explored", page.exploration == "stopped" ? "stopped before all traces were explored"
                                                        : page.exploration);

@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 
+#include "compiler/base/words.h"
 #include "compiler/repair/condition_literal.h"
 #include "compiler/repair/edit_grammar.h"
 #include "compiler/repair/start_split.h"
@@ -421,15 +422,14 @@ class SplitSearch {
                               harness::rule_text(rule.borders, cause.parameters)));
     for (const auto& gap : cause.gaps) out.push_back(gap);
     if (held.nowhere > 0) {
-      out.push_back(
-          fmt::format("{} run{} ended in no state that the model has, and no edit admits it.",
-                      held.nowhere, held.nowhere == 1 ? "" : "s"));
+      out.push_back(fmt::format("{} ended in no state that the model has, and no edit admits it.",
+                                base::counted(held.nowhere, "run")));
     }
     const auto left = held.left;
     if (left > 0) {
-      out.push_back(fmt::format(
-          "{} run{} that failed otherwise {} what is left: run again, and repair again.", left,
-          left == 1 ? "" : "s", left == 1 ? "is" : "are"));
+      out.push_back(
+          fmt::format("{} that failed otherwise {} what is left: run again, and repair again.",
+                      base::counted(left, "run"), base::agreed(left, "is", "are")));
     }
     return out;
   }

@@ -11,6 +11,7 @@
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
+#include "compiler/base/words.h"
 #include "harness/campaign/campaign.h"
 #include "harness/report/report.h"
 #include "tools/app/closed_loop.h"
@@ -289,8 +290,8 @@ std::string loop_text(const RepairLoop& loop) {
   std::string out;
   for (std::size_t i = 0; i < loop.rounds.size(); ++i) {
     const auto& round = loop.rounds[i];
-    out += fmt::format("round {}: {}: {} run{}, {} of them not as the model says", i + 1,
-                       round.folder, round.runs, round.runs == 1 ? "" : "s", round.failed);
+    out += fmt::format("round {}: {}: {}, {} of them not as the model says", i + 1, round.folder,
+                       base::counted(round.runs, "run"), round.failed);
     if (round.experiments > 0) {
       out += fmt::format("; {} made to tell proposals apart", round.experiments);
     }

@@ -3,6 +3,7 @@
 
 #include "compiler/base/json.h"
 #include "compiler/base/shown_text.h"
+#include "compiler/base/words.h"
 #include "tools/repair/repair.h"
 #include "tools/repair/trace_numbers.h"
 
@@ -10,10 +11,6 @@ namespace parallax::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string plural(std::size_t count, const std::string& noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
 
 std::vector<std::string> printed(std::vector<std::string> lines) {
   for (auto& line : lines) line = base::printable(line);
@@ -37,10 +34,10 @@ std::string parting_text(const RunParting& parting) {
 
 std::string head(const RepairResult& result, const std::string& folder) {
   auto out = fmt::format("{}: {}, {} of them not as the model says\n", folder,
-                         plural(result.runs, "run"), result.failed);
+                         base::counted(result.runs, "run"), result.failed);
   if (result.experiments > 0) {
     out += fmt::format("  {} of them {} made to tell proposals apart\n", result.experiments,
-                       result.experiments == 1 ? "was" : "were");
+                       base::agreed(result.experiments, "was", "were"));
   }
   // Where runs contradict each other no axiom is simply wrong.
   for (const auto& text : result.contradictions) {
@@ -102,7 +99,7 @@ std::vector<std::string> proposal_sentences(const Proposal& proposal, std::size_
   }
   const auto& verdict = proposal.verdict;
   auto first =
-      fmt::format("Consistent with {} of {}", verdict.runs_consistent, plural(runs, "run"));
+      fmt::format("Consistent with {} of {}", verdict.runs_consistent, base::counted(runs, "run"));
   if (verdict.runs_whole < verdict.runs_consistent) {
     first += fmt::format(", with {} of them to the end", verdict.runs_whole);
   }
@@ -141,8 +138,8 @@ TieWords tie_words(const RepairResult& result) {
   if (result.not_compared > 0) {
     out.open.push_back(
         fmt::format("{} as likely as the first {} not compared with it; --limit 0 compares all.",
-                    plural(result.not_compared, "further proposal"),
-                    result.not_compared == 1 ? "was" : "were"));
+                    base::counted(result.not_compared, "further proposal"),
+                    base::agreed(result.not_compared, "was", "were")));
   }
   if (result.founded.size() < 2 && result.tied < 2) return out;
   std::string tie;
@@ -150,7 +147,7 @@ TieWords tie_words(const RepairResult& result) {
     tie = fmt::format("A tie: proposals 1 to {} are of one rank", result.tied);
     if (result.tied_hidden > 0) {
       tie += fmt::format(", of which the last {} {} not shown (--limit)", result.tied_hidden,
-                         result.tied_hidden == 1 ? "is" : "are");
+                         base::agreed(result.tied_hidden, "is", "are"));
     }
   } else {
     std::vector<std::size_t> ranks;
@@ -167,20 +164,21 @@ std::string repair_text(const RepairResult& result, const RepairOptions& options
   if (result.runs == 0) return folder + ": no simulation in it came to its end\n";
   if (result.partings.empty() && !result.remarks.empty()) {
     return fmt::format("{}: {}, and nothing that an edit of the model could mend:\n  {}\n", folder,
-                       plural(result.runs, "run"), fmt::join(printed(result.remarks), "\n  "));
+                       base::counted(result.runs, "run"),
+                       fmt::join(printed(result.remarks), "\n  "));
   }
   if (result.partings.empty() && !result.finished) {
     return fmt::format(
         "{}: {}, and the model admits all of them, but the run came to no verdict: `parallax run` "
         "with "
         "--resume goes on with it.\n",
-        folder, plural(result.runs, "run"));
+        folder, base::counted(result.runs, "run"));
   }
   if (result.partings.empty()) {
     return fmt::format(
         "{}: {}, and the model admits all of them: there is nothing to repair.\nMore runs may find "
         "something: `parallax run` with a smaller --epsilon, or other starts, or another plan.\n",
-        folder, plural(result.runs, "run"));
+        folder, base::counted(result.runs, "run"));
   }
   auto out = head(result, folder);
   if (result.proposals.empty()) {

@@ -9,6 +9,7 @@
 
 #include "compiler/base/json.h"
 #include "compiler/base/shown_text.h"
+#include "compiler/base/words.h"
 #include "harness/confidence/rate_evidence.h"
 #include "harness/confidence/rounding.h"
 
@@ -81,9 +82,9 @@ std::vector<std::string> unlike_causes(const harness::CauseExpectation& expect,
     if (same && (expect.kind.empty() || kind == expect.kind)) continue;
     const auto text = member(cause, "cause", "").get<std::string>();
     const auto count = member(cause, "count", 0).get<std::int64_t>();
-    out.push_back(fmt::format("in {} {} the cause is `{}`{}, expected {}", count,
-                              count == 1 ? "run" : "runs", text,
-                              same ? fmt::format(" and its kind {}", kind) : "", words_of(expect)));
+    out.push_back(fmt::format("in {} the cause is `{}`{}, expected {}", base::counted(count, "run"),
+                              text, same ? fmt::format(" and its kind {}", kind) : "",
+                              words_of(expect)));
   }
   return out;
 }
@@ -236,7 +237,7 @@ std::string frequent_causes(std::string_view rates_document) {
   std::string out;
   for (std::size_t i = 0; i < std::min(causes.size(), kShownCauses); ++i) {
     const auto count = member(causes[i], "count", 0).get<std::int64_t>();
-    out += fmt::format("{}{} {}: {}", out.empty() ? "" : "\n", count, count == 1 ? "time" : "times",
+    out += fmt::format("{}{}: {}", out.empty() ? "" : "\n", base::counted(count, "time"),
                        member(causes[i], "cause", "").get<std::string>());
   }
   return out;

@@ -10,6 +10,7 @@
 
 #include "compiler/base/shown_text.h"
 #include "compiler/base/subprocess.h"
+#include "compiler/base/words.h"
 #include "tools/suite/schedule.h"
 
 namespace parallax::tools {
@@ -85,8 +86,8 @@ void Reuse::look_up(double verified_share) {
     }
   }
   if (damaged > 0) {
-    remark_(fmt::format("{} cached result{} not what was written; not used", damaged,
-                        damaged == 1 ? " is" : "s are"));
+    remark_(fmt::format("{} not what was written; not used",
+                        base::counted(damaged, "cached result is", "cached results are")));
   }
   std::stable_sort(hits.begin(), hits.end(), [](const auto& a, const auto& b) {
     return a.second.age_order < b.second.age_order;

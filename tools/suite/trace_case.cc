@@ -14,6 +14,7 @@
 #include "compiler/base/json.h"
 #include "compiler/base/path_gate.h"
 #include "compiler/base/whole_number.h"
+#include "compiler/base/words.h"
 #include "tools/suite/case_process.h"
 #include "tools/suite/expectation.h"
 #include "tools/suite/golden_witness.h"
@@ -78,7 +79,7 @@ void compare_count(const harness::TraceExpectation& expect, const std::string& d
   const bool complete = found.value("exploration", "stopped") != "stopped";
   if (traces == *expect.traces && complete == expect.complete) return;
   const auto phrase = [](std::int64_t count, bool all) {
-    return fmt::format("{} trace{}{}", count, count == 1 ? "" : "s", all ? "" : " and more");
+    return fmt::format("{}{}", base::counted(count, "trace"), all ? "" : " and more");
   };
   result.problems.push_back(fmt::format("{}, expected {}", phrase(traces, complete),
                                         phrase(*expect.traces, expect.complete)));
