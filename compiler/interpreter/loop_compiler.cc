@@ -305,7 +305,7 @@ class LoopCompiler {
       case LoopKind::kReturn:
         c_.compile(*clause.form);
         c_.code.leave_to(c_.code.scope()[out_], form_);
-        return c_.code.adjust(-1);
+        return c_.code.drop(form_);  // never reached: the stack is as high as before the clause
       case LoopKind::kAlways:
       case LoopKind::kNever:
       case LoopKind::kThereis:

@@ -69,7 +69,7 @@ void PlanAssembler::patch_jump(std::size_t at) {
 }
 
 std::uint32_t PlanAssembler::open_exit() {
-  code_.exits.push_back({0, height(), frames_.back().guards});
+  code_.exits.push_back({frames_.back().unit, 0, height(), frames_.back().guards});
   return static_cast<std::uint32_t>(code_.exits.size() - 1);
 }
 
@@ -142,6 +142,7 @@ std::uint32_t PlanAssembler::declare_unit(std::string_view name, DatumId source,
 }
 
 void PlanAssembler::enter_unit(std::uint32_t unit) {
+  if (!frames_.empty()) code_.units[unit].around = frames_.back().unit;
   frames_.push_back({unit, code_.units[unit].parameters, 0, false});
 }
 
@@ -198,6 +199,7 @@ void PlanAssembler::load(const LexicalBinding& binding, DatumId source) {
 void PlanAssembler::store(const LexicalBinding& binding, DatumId source) {
   note_change(binding);
   note_use(binding, binding.index, false);
+  code_.units[frames_[binding.frame].unit].assigned.insert(binding.index);
   emit(PlanOp::kStore, level_of(binding), binding.index, source);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -87,6 +88,8 @@ struct PlanUnit {
   bool top_level = false;                // def-top-level-cram-function
   bool ready = false;                    // its code is complete
   std::uint32_t kept = 0;  // variables that a function value keeps lie below its parameters
+  std::optional<std::uint32_t> around;  // the unit that it is written in
+  std::set<std::uint32_t> assigned;     // places of variables that the plan sets
   DatumId source;
   std::vector<PlanInstruction> code;
 };
@@ -108,6 +111,7 @@ struct FunctionTemplate {
 
 /// Where a kExit goes: the frame keeps `height` values and `guards` guards of its own.
 struct ExitTarget {
+  std::uint32_t unit = 0;
   std::uint32_t pc = 0;
   std::uint32_t height = 0;
   std::uint32_t guards = 0;

@@ -12,6 +12,7 @@
 
 #include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/explorer.h"
+#include "compiler/interpreter/idle_designators.h"
 #include "compiler/interpreter/plan_compiler.h"
 #include "compiler/lisp/lisp_packages.h"
 #include "compiler/lisp/lisp_reader.h"
@@ -429,6 +430,7 @@ base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files,
   const auto facts = read_fact_groups(*text, values, sink);
   const auto code = compile_plan(*text, options.entry, options.interleave, values, sink);
   if (!code || sink.error_count() != errors_before) return sink.already_reported();
+  warn_of_idle_designators(*text, *code, binding, values, sink);
   return Explorer(text->data, *code, facts, binding, locator, options, values, sink).explore();
 }
 

@@ -6,7 +6,7 @@ namespace parallax::compiler {
 namespace {
 
 /// Expressions and their expected values.
-void check_values(const std::vector<std::pair<std::string, std::string>>& cases) {
+void check_equal(const std::vector<std::pair<std::string, std::string>>& cases) {
   for (const auto& one : cases) {
     const auto& expression = one.first;
     CAPTURE(expression);
@@ -19,7 +19,7 @@ void check_values(const std::vector<std::pair<std::string, std::string>>& cases)
 }
 
 TEST_CASE("designators: properties") {
-  check_values({
+  check_equal({
       {"(desig:desig-prop-value cup :type)", ":cup"},
       {"(desig:desig-prop-value cup 'size)", "2"},
       {"(desig:desig-prop-value cup :colour)", "nil"},
@@ -44,7 +44,7 @@ TEST_CASE("designators: properties") {
 }
 
 TEST_CASE("designators: classes") {
-  check_values({
+  check_equal({
       {"(typep cup 'desig:object-designator)", "t"},
       {"(typep cup 'desig:location-designator)", "nil"},
       {"(typep cup 'desig:designator)", "t"},
@@ -58,7 +58,7 @@ TEST_CASE("designators: classes") {
 }
 
 TEST_CASE("designators: equating") {
-  check_values({
+  check_equal({
       {"(desig-equal cup cup)", "t"},
       {"(desig-equal cup (an object (type cup) (size 2)))", "nil"},
       {"(desig-equal cup 5)", "nil"},
