@@ -36,5 +36,33 @@ TEST_CASE("a ring stays in the hand although the contact solver gives up some st
   CHECK(trial.slip_m < kGripSlip_m);
 }
 
+bool slips(const GripCell& cell, std::uint64_t seed) {
+  const GripTrial trial = try_grip(cell, seed);
+  return trial.lost || trial.slip_m > kGripSlip_m;
+}
+
+TEST_CASE("boxes gripped with little margin slip in ODE at every step alike") {
+  int slipped = 0;
+  constexpr int kSeeds = 6;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    CAPTURE(seed);
+    const bool at_4_ms = slips({GripForm::kBox, 1.2, 0.004}, seed);
+    for (const double step_s : {0.002, 0.001, 0.0005}) {
+      CAPTURE(step_s);
+      CHECK(slips({GripForm::kBox, 1.2, step_s}, seed) == at_4_ms);
+    }
+    slipped += at_4_ms ? 1 : 0;
+  }
+  CHECK(slipped > 0);
+  CHECK(slipped < kSeeds);
+}
+
+TEST_CASE("boxes gripped with little margin stay in ODE where their sides are along the pads") {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    CAPTURE(seed);
+    CHECK_FALSE(slips({GripForm::kBox, 1.2, 0.004, harness::EngineKind::kOde, true}, seed));
+  }
+}
+
 }  // namespace
 }  // namespace parallax::tools

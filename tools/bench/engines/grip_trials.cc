@@ -216,7 +216,7 @@ GripTrial try_grip(const GripCell& cell, std::uint64_t seed, const harness::Solv
                  body("load", load_of(cell.form, width_m, height_m, draw),
                       {0.40 + aside_m, 0.0, load_m}, 1.0, "load")};
   spec.bodies.back().mass_kg = 2.0 * friction * squeeze_n / (cell.margin * pull_m_s2);
-  spec.bodies.back().yaw_rad = yaw_rad;
+  spec.bodies.back().yaw_rad = cell.straight ? 0.0 : yaw_rad;
   const double clearance_m = 0.5 * (kOpening_m - width_m);
   add_robot(spec, clearance_m - 0.012 + off_m, load_m + above_m);
 
