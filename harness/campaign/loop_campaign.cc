@@ -10,6 +10,7 @@
 #include "compiler/base/contract.h"
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/loop_counts.h"
+#include "harness/campaign/loop_cover.h"
 #include "harness/campaign/loop_judge.h"
 #include "harness/campaign/loop_stream.h"
 #include "harness/campaign/repetition.h"
@@ -22,28 +23,6 @@ namespace parallax::harness {
 namespace {
 
 using LoopClock = std::chrono::steady_clock;
-
-constexpr double kRateLevel = 0.95;  // of the intervals of rates, as of `parallax rates`
-
-/// The plan executed once more from the start and seed of a record, with the same choices.
-class RepeatedExecution final : public SampleMaker {
- public:
-  explicit RepeatedExecution(std::shared_ptr<const LoopSamples> samples)
-      : samples_(std::move(samples)) {}
-  std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
-                                   const std::function<bool()>& abandoned) const override {
-    return samples_->make(sample, simulator, abandoned);
-  }
-  std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
-                                     const std::function<bool()>& abandoned) const override {
-    auto again = samples_->make_at(record, record.sample, record.initial, simulator, abandoned);
-    if (again) again->phase = DrawPhase::kConfirm;
-    return again;
-  }
-
- private:
-  std::shared_ptr<const LoopSamples> samples_;
-};
 
 class LoopCampaign {
  public:
@@ -138,23 +117,16 @@ class LoopCampaign {
 
   /// False when stopped.
   bool watch_what_is_shown() {
-    cover_ = feed_.cover(options_.seed);
-    if (cover_ == nullptr) return false;
-    const auto items = std::ssize(cover_->items());
-    shown_.resize(cover_->items().size(), false);
-    const auto& criterion = scenario_.criterion;
-    if (items > 0) bounds_.emplace(items, criterion.confidence_level, criterion.epsilon);
-    if (bounds_ && scenario_.limits.max_runs == 0) {
-      limit_.max_runs = std::max(limit_.max_runs, 2 * bounds_->runs_needed());
+    auto* watch = feed_.cover(options_.seed);
+    if (watch == nullptr) return false;
+    cover_.emplace(*watch, scenario_.criterion);
+    if (scenario_.limits.max_runs == 0) {
+      limit_.max_runs = std::max(limit_.max_runs, 2 * cover_->runs_needed());
     }
     return true;
   }
 
-  /// Was everything shown that is to be, or is rare what was not?
-  bool is_covered() const { return !bounds_ || is_all_shown() || bounds_->is_rare(); }
-  bool is_all_shown() const {
-    return std::find(shown_.begin(), shown_.end(), false) == shown_.end();
-  }
+  bool is_covered() const { return !cover_ || cover_->is_over(); }
 
   /// Something was found that ends other runs.
   bool goes_on_anyway() const {
@@ -172,7 +144,7 @@ class LoopCampaign {
     const std::int64_t window = options_.jobs == 1 ? 1 : 2 * options_.jobs;
     const auto guided = stream_.loop->guided.value_or(0);
     auto asked = goes_on_anyway() ? planned() : decision.runs_needed.value_or(limit_.max_runs);
-    if (!is_covered()) asked = std::max(asked, bounds_->runs_needed());
+    if (!is_covered()) asked = std::max(asked, cover_->runs_needed());
     const auto needed = std::max(asked + guided, samples_.next_sample());
     return std::min({samples_.next_sample() + window - 1, needed, limit_.max_runs + guided});
   }
@@ -282,14 +254,12 @@ class LoopCampaign {
 
   /// An execution that came to a result. Is it one of those that rates are about?
   bool note(const SampleRecord& record, bool admitted) {
-    if (bounds_) {
-      for (const auto item : cover_->shown_by(record, admitted)) shown_[item] = true;
-    }
+    if (cover_) cover_->note(record, admitted);
     if (is_guided(record)) {
       note_guided();
       return false;
     }
-    if (bounds_) bounds_->add_run();
+    if (cover_) cover_->add_drawn();
     return rated_.next();
   }
 
@@ -302,7 +272,7 @@ class LoopCampaign {
     } else {
       tally_.add_rejected(record.rejected);
       tally_.add_lost();
-      if (bounds_) bounds_->add_lost();
+      if (cover_) cover_->add_lost();
       (void)rated_.next();  // it has its place, but what it would have shown is not known
     }
     count_loss(record, stream_);
@@ -384,8 +354,7 @@ class LoopCampaign {
                                        : std::min(decision.runs_needed.value_or(limit_.max_runs),
                                                   limit_.max_runs);
     if (!is_covered()) {
-      progress.needed =
-          std::min(std::max(progress.needed, bounds_->runs_needed()), limit_.max_runs);
+      progress.needed = std::min(std::max(progress.needed, cover_->runs_needed()), limit_.max_runs);
     }
     const auto made = static_cast<double>(bench_.runs_made());
     progress.runs_per_s = elapsed.count() > 0.0 ? made / elapsed.count() : 0.0;
@@ -425,57 +394,19 @@ class LoopCampaign {
           "the claim is about the others alone, whose starts were drawn",
           guided));
     }
-    auto& causes = stream.loop->causes;
-    stream.loop->causes_level = kRateLevel;
-    const auto rated = lost_too_often_ ? rated_.planned() : rated_.counted();
-    stream.loop->causes_unseen = rated - stream.loop->causes_runs;
-    // An interruption is not planned, so the number of executions was not fixed.
-    const auto set = result_.interrupted ? set_anytime_interval : set_interval;
-    for (auto& rate : causes) {
-      set(rate, stream.loop->causes_runs, stream.loop->causes_unseen, kRateLevel);
-    }
-    if (!causes.empty() && result_.interrupted) {
-      stream.caveats.emplace_back(
-          "the run was stopped, so the intervals of causes are those that hold whenever one looks");
-    }
-    if (!causes.empty() && stream.loop->causes_unseen > 0) {
-      stream.caveats.push_back(unseen_text(stream.loop->causes_unseen));
-    }
-    if (!causes.empty() && (guided > 0 || rated_.goes_on())) {
-      stream.caveats.push_back(fmt::format(
-          "how often each cause comes is counted in the first {} executions with a drawn start: a "
-          "number that nothing seen decides",
-          rated_.counted()));
-    }
-    std::stable_sort(causes.begin(), causes.end(),
-                     [](const auto& a, const auto& b) { return a.count > b.count; });
+    rate_causes(rated_, lost_too_often_, result_.interrupted, stream);
     const auto* found = result_.discrepancies.empty() ? nullptr : &result_.discrepancies.front();
     add_loss_caveats(stream);
     add_simulator_caveats(result_.simulator, found, stream);
   }
 
   void fill_cover() {
-    if (cover_ == nullptr) return;
-    auto& cover = stream_.loop->cover.emplace();
+    if (!cover_) return;
+    const auto& cover =
+        stream_.loop->cover.emplace(cover_->result(executions() >= limit_.max_runs));
     using CoverEnd = CoverResult::End;
-    cover.items = std::ssize(shown_);
-    cover.unreachable = cover_->unreachable();
-    cover.epsilon = scenario_.criterion.epsilon;
-    cover.end = is_all_shown()                    ? CoverEnd::kShown
-                : is_covered()                    ? CoverEnd::kRare
-                : executions() >= limit_.max_runs ? CoverEnd::kRunLimit
-                                                  : CoverEnd::kStopped;
     if (cover.end == CoverEnd::kShown) result_.exploration = to_string(cover.end);
     if (cover.end == CoverEnd::kRare) result_.exploration = "complete up to bound";
-    for (std::size_t i = 0; i < shown_.size(); ++i) {
-      if (!shown_[i]) cover.left.push_back(cover_->items()[i]);
-    }
-    if (!bounds_) return;
-    const auto bound = bounds_->bound();
-    cover.drawn = bounds_->runs();
-    cover.lost = bounds_->lost();
-    cover.confidence = bound.confidence_level;
-    cover.bound = bound.epsilon;
   }
 
   base::Result<CampaignResult> finished(bool interrupted) {
@@ -521,9 +452,7 @@ class LoopCampaign {
   Tally tally_;
   LawCounter law_;
   FixedCount rated_;
-  CoverWatch* cover_ = nullptr;       // of a run that goes on until everything was shown
-  std::vector<bool> shown_;           // by item
-  std::optional<ItemBounds> bounds_;  // none: there is nothing to be shown
+  std::optional<LoopCover> cover_;  // of a run that goes on until everything was shown
   std::int64_t drawn_unfinished_ = 0;
   std::unique_ptr<Journal> journal_;
   CampaignResult result_;

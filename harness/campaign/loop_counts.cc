@@ -5,7 +5,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "harness/campaign/run_setup.h"
+
 namespace parallax::harness {
+namespace {
+
+constexpr double kRateLevel = 0.95;  // of the intervals of rates, as of `parallax rates`
+
+}  // namespace
 
 void count_path(const SampleRecord& record, LoopResult& loop) {
   PathCount path;
@@ -22,6 +29,30 @@ void count_path(const SampleRecord& record, LoopResult& loop) {
            other.end == path.end && other.detail == path.detail;
   });
   ++(same == paths.end() ? paths.emplace_back(std::move(path)) : *same).runs;
+}
+
+void rate_causes(const FixedCount& counted, bool lost_too_often, bool interrupted,
+                 TraceResult& stream) {
+  auto& loop = *stream.loop;
+  loop.causes_level = kRateLevel;
+  loop.causes_unseen = (lost_too_often ? counted.planned() : counted.counted()) - loop.causes_runs;
+  // An interruption is not planned, so the number of executions was not fixed.
+  const auto set = interrupted ? set_anytime_interval : set_interval;
+  for (auto& rate : loop.causes) set(rate, loop.causes_runs, loop.causes_unseen, kRateLevel);
+  if (loop.causes.empty()) return;
+  if (interrupted) {
+    stream.caveats.emplace_back(
+        "the run was stopped, so the intervals of causes are those that hold whenever one looks");
+  }
+  if (loop.causes_unseen > 0) stream.caveats.push_back(unseen_text(loop.causes_unseen));
+  if (loop.guided.value_or(0) > 0 || counted.goes_on()) {
+    stream.caveats.push_back(fmt::format(
+        "how often each cause comes is counted in the first {} executions with a drawn start: a "
+        "number that nothing seen decides",
+        counted.counted()));
+  }
+  std::stable_sort(loop.causes.begin(), loop.causes.end(),
+                   [](const auto& a, const auto& b) { return a.count > b.count; });
 }
 
 std::string_view to_string(CoverResult::End end) {

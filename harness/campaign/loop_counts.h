@@ -4,12 +4,20 @@
 
 #include "harness/campaign/campaign_result.h"
 #include "harness/campaign/sample_record.h"
+#include "harness/confidence/item_bounds.h"
 #include "harness/config/scenario.h"
 
 namespace parallax::harness {
 
 /// Counts an execution among those that went the same way.
 void count_path(const SampleRecord& record, LoopResult& loop);
+
+/// Sets the rates of the causes with their intervals, at 95 %, and puts the most frequent first;
+/// adds what is to be known of them to the caveats. `counted`: the executions that rates are about;
+/// `lost_too_often`: the run ended before it had made all of these; `interrupted`: at a moment that
+/// was not planned.
+void rate_causes(const FixedCount& counted, bool lost_too_often, bool interrupted,
+                 TraceResult& stream);
 
 /// The reason why the plan did not come to its end; empty if it did.
 std::string why_unfinished(const ExecutedPath& path, const Scenario& scenario);

@@ -111,4 +111,24 @@ class GuidedSample final : public SampleMaker {
   GuidedStart start_;
 };
 
+/// The plan executed once more from the start and seed of a record, with the same choices.
+class RepeatedExecution final : public SampleMaker {
+ public:
+  explicit RepeatedExecution(std::shared_ptr<const LoopSamples> samples)
+      : samples_(std::move(samples)) {}
+  std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
+                                   const std::function<bool()>& abandoned) const override {
+    return samples_->make(sample, simulator, abandoned);
+  }
+  std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
+                                     const std::function<bool()>& abandoned) const override {
+    auto again = samples_->make_at(record, record.sample, record.initial, simulator, abandoned);
+    if (again) again->phase = DrawPhase::kConfirm;
+    return again;
+  }
+
+ private:
+  std::shared_ptr<const LoopSamples> samples_;
+};
+
 }  // namespace parallax::harness
