@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <system_error>
 
@@ -16,11 +15,11 @@
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/replay.h"
 #include "harness/config/load_limits.h"
-#include "harness/config/scenario_settings.h"
 #include "harness/discrete/model_simulator.h"
 #include "harness/simulator/command_files.h"
 #include "tools/app/edited_scenario.h"
 #include "tools/app/file_kind.h"
+#include "tools/app/region_locator.h"
 #include "tools/app/start_weights.h"
 #include "tools/app/version.h"
 #include "tools/app/world_model.h"
@@ -28,74 +27,6 @@
 namespace parallax::tools {
 
 namespace {
-
-/// The plan's poses are located with the regions that the simulation is mapped with.
-class RegionLocator final : public compiler::PoseLocator {
- public:
-  explicit RegionLocator(const harness::RegionMap& regions) : regions_(&regions) {}
-
-  std::optional<std::string> region_of(std::string_view function,
-                                       const compiler::Pose& pose) const override {
-    const auto* region = regions_->locate(function, point(pose));
-    if (region == nullptr) return std::nullopt;
-    return region->name;
-  }
-
-  std::optional<Nearest> nearest(std::string_view function,
-                                 const compiler::Pose& pose) const override {
-    std::optional<Nearest> best;
-    const auto at = point(pose);
-    for (const auto& region : regions_->regions()) {
-      if (!region.frame.empty() || !regions_->answers(function, region)) continue;
-      const auto here = distance(region, at);
-      if (!best || here.distance_m < best->distance_m) best = here;
-    }
-    return best;
-  }
-
-  std::optional<base::SourceRange> place_of(std::string_view name) const override {
-    for (const auto& region : regions_->regions()) {
-      if (region.name == name) return region.source;
-    }
-    return std::nullopt;
-  }
-
- private:
-  /// An angle counts as outside the region, not as a distance.
-  Nearest distance(const harness::Region& region, const harness::Point& at) const {
-    double squared_m2 = 0.0;
-    std::string outside;
-    for (const auto axis : harness::kRegionAxes) {
-      const auto& bound = region.on(axis);
-      if (!bound) continue;
-      const double value = at[static_cast<std::size_t>(axis)];
-      const double outside_m = std::max({bound->lower - value, value - bound->upper, 0.0});
-      if (axis == harness::RegionAxis::kYaw ? contains_yaw(region, at) : outside_m == 0.0) continue;
-      if (axis != harness::RegionAxis::kYaw) squared_m2 += outside_m * outside_m;
-      outside +=
-          fmt::format("{}{}: {:.4g} is not from {:.4g} to {:.4g}", outside.empty() ? "" : "; ",
-                      to_string(axis), value, bound->lower, bound->upper);
-    }
-    return {region.name, std::sqrt(squared_m2), outside};
-  }
-
-  bool contains_yaw(const harness::Region& region, const harness::Point& at) const {
-    auto moved = at;
-    for (const auto axis : harness::kRegionAxes) {
-      const auto& bound = region.on(axis);
-      if (bound && axis != harness::RegionAxis::kYaw) {
-        moved[static_cast<std::size_t>(axis)] = bound->midpoint();
-      }
-    }
-    return regions_->contains(region, moved);
-  }
-
-  /// A place is a point that something lies at: its height is that of the lowest point.
-  static harness::Point point(const compiler::Pose& pose) {
-    return {pose.x_m, pose.y_m, pose.z_m, compiler::yaw_rad(pose), pose.z_m};
-  }
-  const harness::RegionMap* regions_;
-};
 
 /// Traces are to end where the property does not hold, also right at the start.
 base::Status look_for_violations(const std::string& property, compiler::CompileInput& input,
@@ -413,19 +344,7 @@ base::Result<ScenarioModel> load_compared_scenario(const std::filesystem::path& 
                                                    Context& context) {
   Switches switches;
   switches.settings = &settings;
-  auto loaded = load(path, context, switches);
-  if (!loaded) return context.sink().already_reported();
-  const auto& command = loaded->scenario.simulator.command;
-  if (!command.empty()) {
-    // Content of the files that the command names; its words are a setting of their own.
-    harness::insert(settings, {{"simulator", "command", "files"},
-                               "SHA-256 " + harness::hash_of_command(command),
-                               std::nullopt,
-                               true,
-                               path.string(),
-                               0});
-  }
-  return loaded;
+  return load(path, context, switches);
 }
 
 base::Result<ScenarioModel> load_watched_scenario(const std::filesystem::path& path,

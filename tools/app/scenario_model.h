@@ -48,8 +48,7 @@ base::Result<ScenarioModel> load_scenario_run(const std::filesystem::path& path,
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
                                                 Context& context);
 
-/// The same for a comparison: also lists the settings beside model and plan, and the contents of
-/// the files that an external simulator's command names.
+/// The same for comparing it with another: also lists what it says beside model and plan.
 base::Result<ScenarioModel> load_compared_scenario(const std::filesystem::path& path,
                                                    harness::ScenarioSettings& settings,
                                                    Context& context);

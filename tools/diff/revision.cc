@@ -6,6 +6,7 @@
 #include "compiler/base/codes/artifacts.h"
 #include "compiler/base/file_io.h"
 #include "compiler/compare/model_facts.h"
+#include "harness/simulator/command_files.h"
 #include "tools/app/scenario_model.h"
 
 namespace parallax::tools {
@@ -80,12 +81,27 @@ void add_world_facts(const harness::Scenario& scenario, const compiler::LoadOpti
   }
 }
 
+/// What the files hold that an external simulator's command names; its words are a setting of
+/// their own.
+void add_command_files(const std::string& path, const harness::Scenario& scenario,
+                       harness::ScenarioSettings& settings) {
+  const auto& command = scenario.simulator.command;
+  if (command.empty()) return;
+  harness::insert(settings, {{"simulator", "command", "files"},
+                             "SHA-256 " + harness::hash_of_command(command),
+                             std::nullopt,
+                             true,
+                             path,
+                             0});
+}
+
 base::Result<ModelRevision> load_scenario_revision(const std::string& path, Context& context) {
   ModelRevision out{path, RevisionKind::kScenario, {}, harness::ScenarioSettings(), std::nullopt,
                     false};
   auto loaded = load_compared_scenario(path, *out.settings, context);
   if (!loaded) return context.sink().already_reported();
   const auto& scenario = loaded->scenario;
+  add_command_files(path, scenario, *out.settings);
   std::vector<std::string> models;
   for (const auto& model : scenario.models) models.push_back(model.text);
   compiler::LoadOptions load;
