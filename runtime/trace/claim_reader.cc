@@ -310,26 +310,45 @@ bool ClaimReader::has(AtomKind kind, const std::string& name) const {
   return fluents_.contains(name);
 }
 
+/// E6103, reported, for an atom that the model does not have.
+bool ClaimReader::know(AtomKind kind, const std::string& name, base::SourceRange source) {
+  if (has(kind, name)) return true;
+  auto built = sink_.error(codes::kTraceUnknownAtom, source, word_of(kind), name);
+  std::vector<std::string> names;
+  for (const auto& symbol : symbols_of(kind)) {
+    names.insert(names.end(), symbol.atoms.begin(), symbol.atoms.end());
+  }
+  if (names.size() > kMaxSuggested) return false;
+  if (const auto near = base::nearest_name(name, names)) {
+    built.fix(fmt::format("replace `{}` with `{}`", name, *near));
+  }
+  return false;
+}
+
 bool ClaimReader::claim(AtomKind kind, std::string name, const AtomClaim& claim,
                         AtomClaims& claims) {
-  if (!has(kind, name)) {
-    auto built = sink_.error(codes::kTraceUnknownAtom, claim.source, word_of(kind), name);
-    std::vector<std::string> names;
-    for (const auto& symbol : symbols_of(kind)) {
-      names.insert(names.end(), symbol.atoms.begin(), symbol.atoms.end());
-    }
-    if (names.size() > kMaxSuggested) return false;
-    if (const auto near = base::nearest_name(name, names)) {
-      built.fix(fmt::format("replace `{}` with `{}`", name, *near));
-    }
-    return false;
-  }
+  if (!know(kind, name, claim.source)) return false;
   const auto [entry, added] = claims.listed.try_emplace(std::move(name), claim);
   if (added || entry->second.value == claim.value) return true;
   sink_
       .error(codes::kTraceFileShape, claim.source, fmt::format("one value of `{}`", entry->first),
              "another one")
       .note(entry->second.source, "the first one stands here");
+  return false;
+}
+
+bool ClaimReader::leave_open(AtomKind kind, std::string name, base::SourceRange source,
+                             AtomClaims& claims) {
+  if (!know(kind, name, source)) return false;
+  const auto claimed = claims.listed.find(name);
+  if (claimed == claims.listed.end()) {
+    claims.open.insert(std::move(name));
+    return true;
+  }
+  sink_
+      .error(codes::kTraceFileShape, source, "an atom that has no value",
+             fmt::format("`{}`, which has one", name))
+      .note(claimed->second.source, "the value stands here");
   return false;
 }
 

@@ -87,6 +87,10 @@ class ClaimReader {
   base::Reported unexpected(std::string_view what, const JsonValue& found);
   /// Adds a claim; E6103 unless the model has the atom, E6102 if it was claimed otherwise before.
   bool claim(compiler::AtomKind kind, std::string name, const AtomClaim& claim, AtomClaims& claims);
+  /// Notes that nothing is claimed of an atom. E6103 unless the model has it, E6102 if it was
+  /// claimed before.
+  bool leave_open(compiler::AtomKind kind, std::string name, base::SourceRange source,
+                  AtomClaims& claims);
   base::DiagnosticSink& sink() { return sink_; }
   /// Does the model have such a symbol?
   bool has_symbol(compiler::AtomKind kind, const std::string& symbol) const;
@@ -95,6 +99,7 @@ class ClaimReader {
 
  private:
   bool has(compiler::AtomKind kind, const std::string& name) const;
+  bool know(compiler::AtomKind kind, const std::string& name, base::SourceRange source);
   const std::vector<SymbolInstances>& symbols_of(compiler::AtomKind kind) const;
 
   const Vocabulary* vocabulary_ = nullptr;

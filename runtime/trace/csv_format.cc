@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "compiler/base/shown_text.h"
+#include "runtime/trace/open_atoms.h"
 
 namespace parallax::runtime {
 namespace {
@@ -15,18 +16,25 @@ void append_names(const std::vector<SymbolInstances>& symbols, const char* befor
 }
 
 template <typename Id>
+void append_value(const Id& id, const std::vector<Id>& truths, const std::vector<Id>& open,
+                  std::string& row) {
+  row += contains(open, id) ? "," : contains(truths, id) ? ",1" : ",0";
+}
+
+template <typename Id>
 void append_bits(const std::vector<SymbolInstances>& symbols, const std::vector<Id>& truths,
-                 std::string& row) {
+                 const std::vector<Id>& open, std::string& row) {
   for (const auto& symbol : symbols) {
-    for (const auto id : symbol.ids) row += contains(truths, Id(id)) ? ",1" : ",0";
+    for (const auto id : symbol.ids) append_value(Id(id), truths, open, row);
   }
 }
 
 /// Predicates have no ids in a trace.
 void append_predicates(const std::vector<SymbolInstances>& symbols,
-                       const std::vector<std::string>& truths, std::string& row) {
+                       const std::vector<std::string>& truths, const std::vector<std::string>& open,
+                       std::string& row) {
   for (const auto& symbol : symbols) {
-    for (const auto& atom : symbol.atoms) row += contains(truths, atom) ? ",1" : ",0";
+    for (const auto& atom : symbol.atoms) append_value(atom, truths, open, row);
   }
 }
 
@@ -49,19 +57,19 @@ std::string CsvFormat::begin() {
   return row + "\r\n";
 }
 
-std::string CsvFormat::trace(const Trace& trace) {
+std::string CsvFormat::trace(const Trace& trace, const OpenAtoms& open) {
   std::string out;
   for (std::size_t t = 0; t < trace.points.size(); ++t) {
     const auto& point = trace.points[t];
     out += std::to_string(trace.number) + ',' + std::to_string(t);
-    append_bits(vocabulary_.fluents, point.holds, out);
-    append_bits(vocabulary_.releasable, point.released, out);
+    append_bits(vocabulary_.fluents, point.holds, {}, out);
+    append_bits(vocabulary_.releasable, point.released, open.released_at(t), out);
     if (t + 1 < trace.points.size()) {
-      append_bits(vocabulary_.events, point.happens, out);
+      append_bits(vocabulary_.events, point.happens, {}, out);
     } else {
       out.append(count(vocabulary_.events), ',');
     }
-    append_predicates(vocabulary_.predicates, trace.predicates, out);
+    append_predicates(vocabulary_.predicates, trace.predicates, open.predicates, out);
     out += "\r\n";
   }
   return out;

@@ -6,6 +6,7 @@
 
 #include "compiler/base/line_diff.h"
 #include "compiler/base/whole_number.h"
+#include "runtime/trace/open_atoms.h"
 
 namespace parallax::runtime {
 
@@ -116,6 +117,13 @@ void DecreasonerFormat::collect(const CompiledModel& model) {
   }
 }
 
+bool DecreasonerFormat::is_open(const OpenAtoms& open, const Proposition& proposition) {
+  if (proposition.kind == AtomKind::kPredicate) return contains(open.predicates, proposition.name);
+  if (proposition.kind != AtomKind::kReleasedAt) return false;
+  const auto& fluents = open.released_at(static_cast<std::size_t>(proposition.time.value_or(0)));
+  return contains(fluents, compiler::FluentId(proposition.number));
+}
+
 bool DecreasonerFormat::is_true(const Trace& trace, const Proposition& proposition) {
   if (proposition.kind == AtomKind::kPredicate) {
     return contains(trace.predicates, proposition.name);
@@ -162,11 +170,12 @@ bool DecreasonerFormat::is_shown_with_time(const Proposition& proposition, Timep
 }
 
 /// All false atoms, then the true ones; events are appended by the caller.
-void DecreasonerFormat::append_state(const Trace& trace, std::size_t t, Lines& out) const {
+void DecreasonerFormat::append_state(const Trace& trace, const OpenAtoms& open, std::size_t t,
+                                     Lines& out) const {
   Lines holding;
   for (const auto& one : propositions_) {
     const auto time = one.kind == AtomKind::kPredicate ? last_number(one.name) : one.time;
-    if (time != static_cast<Timepoint>(t)) continue;
+    if (time != static_cast<Timepoint>(t) || is_open(open, one)) continue;
     if (!is_true(trace, one)) {
       out.push_back('!' + one.line + '.');
     } else if (one.kind != AtomKind::kHappens) {
@@ -176,10 +185,11 @@ void DecreasonerFormat::append_state(const Trace& trace, std::size_t t, Lines& o
   append_sorted(std::move(holding), out);
 }
 
-void DecreasonerFormat::append_rest(const Trace& trace, Lines& out) const {
+void DecreasonerFormat::append_rest(const Trace& trace, const OpenAtoms& open, Lines& out) const {
   Lines holding, other;
   for (const auto& one : propositions_) {
     if (one.time.value_or(0) > trace.length() || is_shown_with_time(one, trace.length())) continue;
+    if (is_open(open, one)) continue;
     if (!is_true(trace, one)) {
       other.push_back('!' + one.line + '.');
     } else if (one.kind != AtomKind::kHappens) {
@@ -190,14 +200,14 @@ void DecreasonerFormat::append_rest(const Trace& trace, Lines& out) const {
   append_sorted(std::move(other), out);
 }
 
-Lines DecreasonerFormat::lines(const Trace& trace) const {
+Lines DecreasonerFormat::lines(const Trace& trace, const OpenAtoms& open) const {
   Lines out;
   for (std::size_t t = 0; t < trace.points.size(); ++t) {
     out.push_back(std::to_string(t));
     if (options_.time_diff) {
       append_changes(trace, t, out);
     } else {
-      append_state(trace, t, out);
+      append_state(trace, open, t, out);
     }
     Lines events;
     for (const auto name : trace.happens(t)) {
@@ -207,13 +217,13 @@ Lines DecreasonerFormat::lines(const Trace& trace) const {
   }
   if (options_.show_predicates) {
     out.emplace_back("P");
-    append_rest(trace, out);
+    append_rest(trace, open, out);
   }
   return out;
 }
 
-std::string DecreasonerFormat::trace(const Trace& trace) {
-  auto now = lines(trace);
+std::string DecreasonerFormat::trace(const Trace& trace, const OpenAtoms& open) {
+  auto now = lines(trace, open);
   const bool whole = printed_++ == 0 || !options_.model_diff;
   std::string out = "---\nmodel " + std::to_string(trace.number) + (whole ? ":\n" : " diff:");
   if (whole) {

@@ -27,10 +27,10 @@ class DecreasonerFormat final : public ListFormat {
  public:
   /// `model` outlives the format.
   DecreasonerFormat(const CompiledModel& model, const DecreasonerOptions& options);
-  std::string trace(const Trace& trace) override;
+  std::string trace(const Trace& trace, const OpenAtoms& open) override;
   std::string end(const ListEnd& end) override;
-  /// The lines below `model K:`.
-  Lines lines(const Trace& trace) const;
+  /// The lines below `model K:`. Open atoms have none.
+  Lines lines(const Trace& trace, const OpenAtoms& open) const;
 
  private:
   struct Proposition {
@@ -43,8 +43,9 @@ class DecreasonerFormat final : public ListFormat {
 
   void collect(const CompiledModel& model);
   void append_changes(const Trace& trace, std::size_t t, Lines& out) const;
-  void append_state(const Trace& trace, std::size_t t, Lines& out) const;
-  void append_rest(const Trace& trace, Lines& out) const;
+  void append_state(const Trace& trace, const OpenAtoms& open, std::size_t t, Lines& out) const;
+  void append_rest(const Trace& trace, const OpenAtoms& open, Lines& out) const;
+  static bool is_open(const OpenAtoms& open, const Proposition& proposition);
   static bool is_true(const Trace& trace, const Proposition& proposition);
   bool is_shown_with_time(const Proposition& proposition, Timepoint length) const;
 

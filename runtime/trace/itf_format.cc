@@ -4,6 +4,7 @@
 
 #include "compiler/base/json.h"
 #include "compiler/base/whole_number.h"
+#include "runtime/trace/open_atoms.h"
 
 namespace parallax::runtime {
 
@@ -62,19 +63,22 @@ Json tuple(const std::string& atom) {
   return Json{{"#tup", std::move(values)}};
 }
 
-/// `is_true(i)`: of the symbol's atom i.
-template <typename IsTrue>
-Json map_of(const SymbolInstances& symbol, const IsTrue& is_true) {
+/// `is_open(i)` and `is_true(i)`: of the symbol's atom i. Open ones are not listed.
+template <typename IsOpen, typename IsTrue>
+Json map_of(const SymbolInstances& symbol, const IsOpen& is_open, const IsTrue& is_true) {
   auto pairs = Json::array();
   for (std::size_t i = 0; i < symbol.atoms.size(); ++i) {
-    pairs.push_back(Json::array({tuple(symbol.atoms[i]), is_true(i)}));
+    if (!is_open(i)) pairs.push_back(Json::array({tuple(symbol.atoms[i]), is_true(i)}));
   }
   return Json{{"#map", std::move(pairs)}};
 }
 
-Json map_of_fluents(const SymbolInstances& symbol, const std::vector<compiler::FluentId>& truths) {
-  return map_of(symbol,
-                [&](std::size_t i) { return contains(truths, compiler::FluentId(symbol.ids[i])); });
+Json map_of_fluents(const SymbolInstances& symbol, const std::vector<compiler::FluentId>& truths,
+                    const std::vector<compiler::FluentId>& open) {
+  const auto is_in = [&](const std::vector<compiler::FluentId>& fluents) {
+    return [&](std::size_t i) { return contains(fluents, compiler::FluentId(symbol.ids[i])); };
+  };
+  return map_of(symbol, is_in(open), is_in(truths));
 }
 
 std::string joined(const Names& events) {
@@ -140,7 +144,7 @@ std::string ItfFormat::vars() const {
   return dumped(names);
 }
 
-std::string ItfFormat::state(const Trace& trace, std::size_t t) const {
+std::string ItfFormat::state(const Trace& trace, const OpenAtoms& open, std::size_t t) const {
   static const std::vector<compiler::EventId> kNone;
   const auto& point = trace.points[t];
   const auto& happened = t > 0 ? trace.points[t - 1].happens : kNone;
@@ -163,32 +167,37 @@ std::string ItfFormat::state(const Trace& trace, std::size_t t) const {
                 {kItfAction, t == 0 ? std::string(kItfInit) : joined(names)},
                 {kItfPicks, picks(vocabulary_.events, happened)}};
   for (const auto& symbol : vocabulary_.fluents)
-    state[symbol.symbol] = map_of_fluents(symbol, point.holds);
+    state[symbol.symbol] = map_of_fluents(symbol, point.holds, {});
   for (const auto& symbol : vocabulary_.releasable) {
-    state[std::string(kItfReleased) + symbol.symbol] = map_of_fluents(symbol, point.released);
+    state[std::string(kItfReleased) + symbol.symbol] =
+        map_of_fluents(symbol, point.released, open.released_at(t));
   }
   for (const auto& symbol : vocabulary_.predicates) {
+    const auto is_in = [&](const std::vector<std::string>& atoms) {
+      return [&](std::size_t i) { return contains(atoms, symbol.atoms[i]); };
+    };
     state[std::string(kItfPredicate) + symbol.symbol] =
-        map_of(symbol, [&](std::size_t i) { return contains(trace.predicates, symbol.atoms[i]); });
+        map_of(symbol, is_in(open.predicates), is_in(trace.predicates));
   }
   return dumped(state);
 }
 
-std::string ItfFormat::trace(const Trace& trace) {
+std::string ItfFormat::trace(const Trace& trace, const OpenAtoms& open) {
   std::string out = "{\"#meta\":" + meta(trace, std::nullopt) + ",\"vars\":" + vars();
   out += ",\"states\":[";
   for (std::size_t t = 0; t < trace.points.size(); ++t) {
     if (t > 0) out += ',';
-    out += state(trace, t);
+    out += state(trace, open, t);
   }
   return out + "]}\n";
 }
 
-std::string ItfFormat::document(const Trace& trace, const std::optional<ListEnd>& end) const {
+std::string ItfFormat::document(const Trace& trace, const OpenAtoms& open,
+                                const std::optional<ListEnd>& end) const {
   std::string out = "{\n\"#meta\":" + meta(trace, end) + ",\n\"vars\":" + vars();
   out += ",\n\"states\":[";
   for (std::size_t t = 0; t < trace.points.size(); ++t) {
-    out += (t > 0 ? ",\n" : "\n") + state(trace, t);
+    out += (t > 0 ? ",\n" : "\n") + state(trace, open, t);
   }
   return out + "\n]\n}\n";
 }

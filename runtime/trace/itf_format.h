@@ -39,22 +39,23 @@ inline constexpr std::string_view kItfInit = "init";  // the action before the f
 
 /// Informal Trace Format (Apalache ADR-015): a state for each timepoint. One variable for each
 /// fluent symbol, a map from tuples of arguments to booleans; the same for releases and user
-/// predicates, under a prefix. `mbt::actionTaken` of a state are the events that led to it, joined
-/// by `+`; `mbt::nondetPicks` are their arguments by event symbol. A list of traces is one object a
-/// line and a closing line.
+/// predicates, under a prefix; maps do not list open atoms. `mbt::actionTaken` of a state are the
+/// events that led to it, joined by `+`; `mbt::nondetPicks` are their arguments by event symbol. A
+/// list of traces is one object a line and a closing line.
 class ItfFormat final : public ListFormat {
  public:
   /// `model` outlives the format.
   ItfFormat(const CompiledModel& model, ItfOptions options);
-  std::string trace(const Trace& trace) override;
+  std::string trace(const Trace& trace, const OpenAtoms& open) override;
   std::string end(const ListEnd& end) override;
   /// One trace as a file of its own: a state on each line. Its `#meta` has `end`, if that is known.
-  std::string document(const Trace& trace, const std::optional<ListEnd>& end) const;
+  std::string document(const Trace& trace, const OpenAtoms& open,
+                       const std::optional<ListEnd>& end) const;
 
  private:
   std::string meta(const Trace& trace, const std::optional<ListEnd>& end) const;
   std::string vars() const;
-  std::string state(const Trace& trace, std::size_t t) const;
+  std::string state(const Trace& trace, const OpenAtoms& open, std::size_t t) const;
 
   const CompiledModel* model_;
   ItfOptions options_;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,12 +22,14 @@ struct AtomClaim {
 struct AtomClaims {
   /// Atoms that are not listed are false. Otherwise nothing is claimed about them.
   bool closed = false;
-  std::map<std::string, AtomClaim, std::less<>> listed;
+  std::map<std::string, AtomClaim, std::less<>> listed = {};
+  /// Said to be undetermined: not listed, and nothing is said of it even if the others are false.
+  std::set<std::string, std::less<>> open = {};
 
   std::optional<bool> value(const std::string& name) const {
     const auto found = listed.find(name);
     if (found != listed.end()) return found->second.value;
-    return closed ? std::optional(false) : std::nullopt;
+    return closed && !open.contains(name) ? std::optional(false) : std::nullopt;
   }
 };
 

@@ -8,6 +8,8 @@
 
 namespace parallax::runtime {
 
+struct OpenAtoms;
+
 /// A format of traces, as pieces that follow one another: a piece that many traces have in common
 /// is made once. A format has no state.
 class TraceFormat {
@@ -46,12 +48,14 @@ struct ListEnd {
 };
 
 /// One way to write a list of traces: the concatenation of begin(), trace() for each trace in
-/// order, and end(). Stateful, for one list only. Equal traces give equal bytes.
+/// order, and end(). Stateful, for one list only. Equal traces with the
+/// same open atoms give equal bytes.
 class ListFormat {
  public:
   virtual ~ListFormat() = default;
   virtual std::string begin() { return {}; }
-  virtual std::string trace(const Trace& trace) = 0;
+  /// Open atoms are not told as facts.
+  virtual std::string trace(const Trace& trace, const OpenAtoms& open) = 0;
   virtual std::string end(const ListEnd& end) = 0;
 };
 

@@ -6,7 +6,9 @@
 
 #include "compiler/base/ascii.h"
 #include "compiler/base/codes/artifacts.h"
+#include "compiler/base/whole_number.h"
 #include "runtime/trace/claim_reader.h"
+#include "runtime/trace/itf_format.h"
 
 namespace parallax::runtime {
 
@@ -33,6 +35,27 @@ bool read_list(const JsonValue& object, std::string_view name, AtomKind kind, Cl
     if (!reader.claim(kind, std::string(atom.text()), claim, claims)) return false;
   }
   return true;
+}
+
+/// One atom of `undetermined`: `P(A)`, or `ReleasedAt(On(A),3)`.
+bool read_undetermined(const JsonValue& atom, ClaimReader& reader, ClaimedTrace& trace) {
+  if (!atom.is(JsonKind::kString)) {
+    reader.unexpected("the text of an atom", atom);
+    return false;
+  }
+  const auto parts = split_atom(atom.text());
+  if (!parts || parts->symbol != "ReleasedAt") {
+    return reader.leave_open(AtomKind::kPredicate, std::string(atom.text()), atom.source(),
+                             trace.predicates);
+  }
+  const bool is_pair = parts->arguments.size() == 2;
+  const auto time = is_pair ? base::whole_number<Timepoint>(parts->arguments[1]) : std::nullopt;
+  if (!time || *time < 0 || *time > trace.length()) {
+    reader.unexpected("`ReleasedAt` of a fluent and a timepoint of the trace", atom);
+    return false;
+  }
+  return reader.leave_open(AtomKind::kReleasedAt, parts->arguments[0], atom.source(),
+                           trace.points[static_cast<std::size_t>(*time)].released);
 }
 
 base::Result<ClaimedTrace> read_jsonl_trace(const JsonValue& root, ClaimReader& reader) {
@@ -70,6 +93,14 @@ base::Result<ClaimedTrace> read_jsonl_trace(const JsonValue& root, ClaimReader& 
   }
   if (!read_list(root, "predicates", AtomKind::kPredicate, reader, trace.predicates)) {
     return sink.already_reported();
+  }
+  const auto undetermined = root.find("undetermined");
+  if (!undetermined) return trace;
+  if (!undetermined->is(JsonKind::kArray)) {
+    return reader.unexpected("a list of atoms", *undetermined);
+  }
+  for (const auto& atom : undetermined->items()) {
+    if (!read_undetermined(atom, reader, trace)) return sink.already_reported();
   }
   return trace;
 }

@@ -204,14 +204,14 @@ TEST_CASE("a single ITF trace is a whole file, several are a line each and a clo
   const runtime::ListEnd end{1, false, "stopped", {}, {}};
   const auto single = list.make({"itf", {}}, true);
   CHECK(single->begin().empty());
-  CHECK(single->trace(lamp(1, true)).empty());
+  CHECK(single->trace(lamp(1, true), {}).empty());
   const auto file = single->end(end);
   CHECK(file.starts_with("{\n\"#meta\":"));
   CHECK(file.find("\"complete\":false") != std::string::npos);
   CHECK(file.find("\"mbt::actionTaken\":\"Press()\"") != std::string::npos);
 
   const auto several = list.make({"itf", {}}, false);
-  const auto line = several->trace(lamp(1, true));
+  const auto line = several->trace(lamp(1, true), {});
   CHECK(std::count(line.begin(), line.end(), '\n') == 1);
   CHECK(several->end(end).find("\"summary\":true,\"traces\":1,\"complete\":false") == 1);
   // None was found: the closing line says so all the same.
@@ -233,8 +233,8 @@ TEST_CASE("a folder of ITF files says that it was stopped until its list has end
   const auto itf = list.make({"itf", folder.string()}, false);
   CHECK(itf->begin().empty());
   CHECK(slurp(folder / "index.json").find("\"exploration\":\"stopped\"") != std::string::npos);
-  CHECK(itf->trace(lamp(1, false)).empty());
-  CHECK(itf->trace(lamp(2, true)).empty());
+  CHECK(itf->trace(lamp(1, false), {}).empty());
+  CHECK(itf->trace(lamp(2, true), {}).empty());
   CHECK(itf->end({2, true, "complete", " (no proof)", {}}) ==
         "2 traces, complete (no proof), in " + folder.string() + "\n");
   CHECK(slurp(folder / "index.json").find("\"exploration\":\"complete\"") != std::string::npos);
@@ -247,7 +247,7 @@ TEST_CASE("a folder of ITF files says that it was stopped until its list has end
     const auto again = list.make({"itf", folder.string()}, false);
     again->begin();
     CHECK(list.context.stopped());
-    again->trace(lamp(1, true));
+    again->trace(lamp(1, true), {});
     CHECK(again->end({1, true, "complete", {}, {}}).empty());  // it is not its folder
     CHECK(list.context.sink().error_count() == 1);
     CHECK(slurp(folder / "index.json") == before);
@@ -255,7 +255,7 @@ TEST_CASE("a folder of ITF files says that it was stopped until its list has end
   }
   SUBCASE("a folder that goes away on the way is an error, and the count is what was written") {
     fs::remove_all(root);
-    itf->trace(lamp(3, true));
+    itf->trace(lamp(3, true), {});
     CHECK(list.context.stopped());
     CHECK(itf->end({3, true, "complete", {}, {}}).starts_with("2 traces, stopped"));
     CHECK(list.context.sink().error_count() == 1);

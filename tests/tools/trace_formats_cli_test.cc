@@ -177,5 +177,112 @@ TEST_CASE("the old printed form obeys the options of the model, and needs its te
   CHECK(cli.parallax({"traces", "m.dec.cnf", "--format", "csv"}).code == 0);
 }
 
+/// At least one lamp is old; which one, no trace tells.
+const std::string kOldLamps = std::string(kLamps) + "predicate Old(lamp)\nOld(A) | Old(B).\n";
+
+/// Lists of predicates, those that are true and those that are open, of each trace.
+std::vector<std::pair<Json, Json>> predicates(const CliFixture& cli,
+                                              std::vector<std::string> words) {
+  words.insert(words.begin(), {"traces", "m.e"});
+  words.insert(words.end(), {"--format", "jsonl"});
+  const auto result = cli.parallax(words);
+  CHECK_MESSAGE(result.code == 0, result.err);
+  std::vector<std::pair<Json, Json>> out;
+  for (const auto& line : lines_of(result.out)) {
+    const auto trace = Json::parse(line);
+    if (!trace.contains("summary")) {
+      out.emplace_back(trace["predicates"], trace.value("undetermined", Json()));
+    }
+  }
+  return out;
+}
+
+TEST_CASE("predicates that a trace leaves open are undetermined, whichever strategy finds it") {
+  const CliFixture cli;
+  cli.write("m.e", kOldLamps);
+  for (const auto* format : {"text", "jsonl", "itf", "csv", "decreasoner"}) {
+    const auto list = [&](const std::string& strategy) {
+      return without_timing(cli.parallax({"traces", "m.e", "--limit", "0", "--distinct",
+                                          "observable", "--format", format, "--strategy", strategy})
+                                .out);
+    };
+    const auto first = list("tree");
+    CHECK(lines_of(first).size() >= 16);
+    for (const auto* strategy : {"auto", "search", "components", "guarded", "blocking"}) {
+      CAPTURE(std::string(format) + ' ' + strategy);
+      CHECK(list(strategy) == first);
+    }
+  }
+  const Json both = {"Old(A)", "Old(B)"};
+  for (const auto& [known, open] : predicates(cli, {"--limit", "3"})) {
+    CHECK(known == Json::array());
+    CHECK(open == both);
+  }
+  const auto all = predicates(cli, {"--distinct", "all", "--limit", "0"});
+  CHECK(all.size() == 3 * 16);
+  for (const auto& [known, open] : all) CHECK(open == Json());
+}
+
+TEST_CASE("what ends a trace, and what is least of all, may settle an open predicate") {
+  const CliFixture cli;
+  cli.write("m.e", kOldLamps);
+  const Json none, both = {"Old(A)", "Old(B)"}, first = {"Old(A)"}, second = {"Old(B)"};
+  for (const std::string hits : {"first", "all"}) {
+    for (const auto& [known, open] :
+         predicates(cli, {"--until", "HoldsAt(On(A),time)", "--limit", "0", "--hits", hits})) {
+      CHECK(known == Json::array());
+      CHECK(open == both);
+    }
+    for (const auto& [known, open] : predicates(
+             cli, {"--until", "HoldsAt(On(A),time) & Old(A)", "--limit", "0", "--hits", hits})) {
+      CHECK(known == first);
+      CHECK(open == second);
+    }
+  }
+  for (const std::string limit : {"1", "0"}) {
+    const auto best = predicates(cli, {"--minimize", "sum 1: Old(A)", "--limit", limit});
+    CHECK(best.size() >= 1);
+    for (const auto& [known, open] : best) {
+      CHECK(known == second);
+      CHECK(open == none);
+    }
+    for (const auto& [known, open] :
+         predicates(cli, {"--minimize", "count Old(lamp)", "--limit", limit})) {
+      CHECK(known == Json::array());
+      CHECK(open == both);
+    }
+  }
+}
+
+TEST_CASE("a violation's trace says of a predicate what the violation settles") {
+  const CliFixture cli;
+  cli.write("m.e", kOldLamps);
+  const auto violation = [&](const std::string& property) {
+    const auto result = cli.parallax({"verify", "m.e", "--property", property, "--json"});
+    CHECK(result.code == 1);
+    return Json::parse(result.out).at("trace");
+  };
+  const auto dark = violation("!HoldsAt(On(A),time)");
+  CHECK(dark.at("predicates") == Json::array());
+  CHECK(dark.at("undetermined") == Json({"Old(A)", "Old(B)"}));
+  const auto old = violation("!(HoldsAt(On(A),time) & Old(A))");
+  CHECK(old.at("predicates") == Json({"Old(A)"}));
+  CHECK(old.at("undetermined") == Json({"Old(B)"}));
+}
+
+TEST_CASE("an undetermined atom is claimed by no replay, in either format") {
+  const CliFixture cli;
+  cli.write("m.e", kOldLamps + "fluent Warm()\n[lamp,time] Releases(Press(lamp),Warm(),time).\n");
+  for (const auto* format : {"jsonl", "itf"}) {
+    const auto list =
+        cli.parallax({"traces", "m.e", "--limit", "5", "--format", format, "--strategy", "search"});
+    cli.write("list", list.out);
+    const auto replayed =
+        Json::parse(cli.parallax({"traces", "m.e", "--replay", "list", "--json"}).out);
+    CHECK(replayed["agree"] == 5);
+    for (const auto& trace : replayed["list"]) CHECK(trace["hidden"] >= 2);
+  }
+}
+
 }  // namespace
 }  // namespace parallax::test

@@ -145,6 +145,36 @@ TEST_CASE("a fact that is left open is found if there is a value for it, and cou
   CHECK(odd.err.find("note") != std::string::npos);  // no single axiom is to blame
 }
 
+TEST_CASE("what is said to be undetermined is an atom of the model, and is not said to be true") {
+  const CliFixture cli;
+  cli.write("m.e",
+            "range time 0 1\nfluent F()\nevent E()\npredicate P()\npredicate Q()\n"
+            "[time] Releases(E(),F(),time).\nP() | Q().\n");
+  const auto replayed = [&](const std::string& predicates, const std::string& undetermined) {
+    const std::string point = R"~("happens":[],"holds":[],"released":[]})~";
+    cli.write("one.jsonl", R"~({"timepoints":[{"time":0,)~" + point + R"~(,{"time":1,)~" + point +
+                               R"~(],"predicates":[)~" + predicates + R"~(],"undetermined":)~" +
+                               undetermined + "}\n");
+    return cli.parallax({"traces", "m.e", "--replay", "one.jsonl"});
+  };
+  CHECK(replayed("", "[]").code == 1);  // neither P nor Q
+  CHECK(replayed("", R"~(["P()"])~").code == 0);
+  CHECK(replayed("\"P()\"", R"~(["Q()","ReleasedAt(F(),0)"])~").code == 0);
+  const auto refused = [&](const std::string& undetermined, const std::string& code) {
+    const auto result = replayed("\"P()\"", undetermined);
+    CHECK(result.code == 3);
+    CHECK_MESSAGE(result.err.find("one.jsonl:1:") == 0, result.err);
+    CHECK_MESSAGE(result.err.find(code) != std::string::npos, result.err);
+  };
+  refused(R"~(["R()"])~", "E6103");
+  refused(R"~(["ReleasedAt(G(),0)"])~", "E6103");
+  refused(R"~(["P()"])~", "E6102");
+  refused(R"~(["ReleasedAt(F(),2)"])~", "E6102");
+  refused(R"~(["ReleasedAt(F())"])~", "E6102");
+  refused("[1]", "E6102");
+  refused("\"Q()\"", "E6102");
+}
+
 TEST_CASE("a trace of another model is refused at the hash, or compared by its names on request") {
   const Lamp lamp;
   lamp.cli.write("m.e", std::string(kLamp) + "!Happens(Press(),0).\n");

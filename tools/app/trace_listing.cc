@@ -8,6 +8,7 @@
 #include "compiler/base/words.h"
 #include "runtime/trace/csv_format.h"
 #include "runtime/trace/itf_format.h"
+#include "runtime/trace/open_atoms.h"
 #include "tools/app/trace_listing.h"
 #include "tools/app/version.h"
 
@@ -16,23 +17,26 @@ namespace {
 
 namespace fs = std::filesystem;
 using runtime::ListEnd;
+using runtime::OpenAtoms;
 using runtime::Trace;
 
 /// One trace on standard output is a whole ITF file, which says how the list ended.
 class SingleItf final : public runtime::ListFormat {
  public:
   explicit SingleItf(runtime::ItfFormat format) : format_(std::move(format)) {}
-  std::string trace(const Trace& trace) override {
+  std::string trace(const Trace& trace, const OpenAtoms& open) override {
     trace_ = trace;
+    open_ = open;
     return {};
   }
   std::string end(const ListEnd& end) override {
-    return trace_ ? format_.document(*trace_, end) : format_.end(end);
+    return trace_ ? format_.document(*trace_, open_, end) : format_.end(end);
   }
 
  private:
   runtime::ItfFormat format_;
   std::optional<Trace> trace_;
+  OpenAtoms open_;
 };
 
 /// A file for each trace, and `index.json`, which says from the start that the list was stopped and
@@ -59,8 +63,8 @@ class ItfFolder final : public runtime::ListFormat {
     }
     return {};
   }
-  std::string trace(const Trace& trace) override {
-    write(fmt::format("trace_{:06}.itf.json", trace.number), format_.document(trace, {}));
+  std::string trace(const Trace& trace, const OpenAtoms& open) override {
+    write(fmt::format("trace_{:06}.itf.json", trace.number), format_.document(trace, open, {}));
     if (!failed_) ++written_;
     return {};
   }

@@ -94,9 +94,11 @@ std::optional<Ending> draw(const SearchOptions& options, const compiler::Compile
     report_refusal(options, sample.refusal, context);
     return std::nullopt;
   }
-  for (const auto& trace : sample.traces) writer.write(trace);
+  for (const auto& trace : sample.traces) {
+    if (!writer.cut_short()) writer.write(trace);
+  }
   show_stats(options, sample.stats, context);
-  if (!sample.complete) return Ending{};
+  if (!sample.complete || writer.cut_short()) return Ending{};
   return Ending{.exploration = fmt::format("drawn from {} with seed {}",
                                            sample.population.get_str(), options.seed)};
 }
@@ -144,7 +146,7 @@ std::optional<Ending> list_orbits(const SearchOptions& options,
   if (writer.full() && !context.stopped()) (void)traces.next();
   show_stats(options, traces.stats(), context);
   show_constants(options, traces.constants(), context);
-  if (!traces.exhausted()) return ending;
+  if (!traces.exhausted() || writer.cut_short()) return ending;
   if (!traces.constants().empty()) certifier.rest_on_symmetry();
   ending.exploration = "complete";
   ending.complete = true;
@@ -244,7 +246,7 @@ std::optional<Ending> list_model_traces(const SearchOptions& options,
   const bool asks_on = query.order == runtime::TraceOrder::kCanonical;
   if (asks_on && writer.full() && !context.stopped()) traces.look_on();
   show_stats(options, traces.stats(), context);
-  if (!traces.exhausted()) return Ending{};
+  if (!traces.exhausted() || writer.cut_short()) return Ending{};
   if (traces.stats().by_symmetry) certifier.rest_on_symmetry();
   return Ending{options.from > 1 ? "complete from there on" : "complete", options.from == 1};
 }

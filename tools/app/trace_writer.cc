@@ -13,38 +13,62 @@ namespace {
 /// Block size of the output, so that listing millions of traces is not one call for each.
 constexpr std::size_t kBlock = std::size_t{1} << 16U;
 
+/// After so many traces it is worth asking of all at once whether they leave atoms open.
+constexpr std::int64_t kAskedOneByOne = 16;
+
 }  // namespace
 
 const runtime::TraceFormat& TraceWriter::format() const {
   return form_.format == "jsonl" ? runtime::jsonl_format() : runtime::text_format();
 }
 
-void TraceWriter::print(const runtime::Trace& trace) {
-  if (form_.count_only) return;
-  if (context_.form().json) {
-    list_ += (list_.empty() ? "" : ",") + runtime::to_jsonl(trace);
-  } else if (form_.listing != nullptr) {
-    context_.result(form_.listing->trace(trace));
-  } else {
-    context_.result(runtime::format_trace(format(), trace));
+/// False if a stop was raised before it was known which atoms are open.
+bool TraceWriter::print(const runtime::Trace& trace) {
+  if (form_.count_only) return true;
+  runtime::OpenAtoms open;
+  if (form_.open_atoms != nullptr) {
+    if (count_ == kAskedOneByOne) (void)form_.open_atoms->none_is_open();
+    auto found = form_.open_atoms->find(trace);
+    if (!found) return false;
+    open = *std::move(found);
   }
+  if (context_.form().json) {
+    list_ += (list_.empty() ? "" : ",") + runtime::to_jsonl(trace, open);
+  } else if (form_.listing != nullptr) {
+    context_.result(form_.listing->trace(trace, open));
+  } else if (form_.format == "jsonl") {
+    context_.result(runtime::to_jsonl(trace, open) + '\n');
+  } else {
+    context_.result(runtime::to_text(trace));
+  }
+  return true;
 }
 
 void TraceWriter::write(const runtime::Trace& trace) {
+  if (!print(trace)) {
+    cut_short_ = true;
+    return;
+  }
   ++count_;
-  print(trace);
   if (check_ != nullptr) check_->check(trace);
   certifier_.add(trace);
 }
 
+/// Traces as such are needed for checks, for a proof, for the document, for other formats, and
+/// where they may leave atoms open.
+bool TraceWriter::needs_traces() {
+  if (check_ != nullptr || certifier_.is_asked() || form_.count_only || form_.listing != nullptr ||
+      context_.form().json) {
+    return true;
+  }
+  if (form_.open_atoms == nullptr) return false;
+  return count_ < kAskedOneByOne || !form_.open_atoms->none_is_open();
+}
+
 void TraceWriter::write_all(runtime::TraceSource& source) {
-  // Traces as objects are needed only for checks, for a proof, for the document and for other
-  // formats.
-  const bool as_text = check_ == nullptr && !certifier_.is_asked() && !form_.count_only &&
-                       form_.listing == nullptr && !context_.form().json;
   std::string block;
   while (!full() && !context_.stopped()) {
-    if (as_text) {
+    if (!needs_traces()) {
       if (!source.print_next(format(), block)) break;
       ++count_;
       // The first ones appear at once.

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/enumerate/open_atom_finder.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/enumerate/trace_source.h"
 #include "runtime/trace/trace_format.h"
@@ -22,6 +23,9 @@ class TraceWriter {
     std::int64_t limit = 0;  // 0: none
     /// In place of `format`, for what is neither text nor jsonl; outlives the writer.
     runtime::ListFormat* listing = nullptr;
+    /// Finds what a trace leaves open, for forms that print such atoms; outlives the writer.
+    /// None: traces are printed as they were found.
+    runtime::OpenAtomFinder* open_atoms = nullptr;
   };
   /// `check` may be null; else it outlives the writer, as the others do.
   TraceWriter(Form form, TraceCheck* check, TraceCertifier& certifier, Context& context)
@@ -30,11 +34,14 @@ class TraceWriter {
   }
 
   bool full() const { return !form_.count_only && form_.limit > 0 && count_ == form_.limit; }
+  /// Prints the trace and counts it.
   void write(const runtime::Trace& trace);
   /// Everything that the source has, up to the limit.
   void write_all(runtime::TraceSource& source);
 
   std::int64_t count() const { return count_; }
+  /// A stop was raised before it was known what to print of a trace: it is left out.
+  bool cut_short() const { return cut_short_; }
   const std::string& list() const { return list_; }
   bool agreed() const { return check_ == nullptr || check_->agreed(); }
   /// `"checked":N,` where traces are checked.
@@ -44,13 +51,15 @@ class TraceWriter {
 
  private:
   const runtime::TraceFormat& format() const;
-  void print(const runtime::Trace& trace);
+  bool print(const runtime::Trace& trace);
+  bool needs_traces();
 
   Form form_;
   TraceCheck* check_;
   TraceCertifier& certifier_;
   Context& context_;
   std::int64_t count_ = 0;
+  bool cut_short_ = false;
   std::string list_;
 };
 

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "compiler/base/codes/files.h"
-#include "compiler/base/json.h"
 #include "compiler/base/words.h"
+#include "runtime/enumerate/open_atom_finder.h"
 #include "runtime/trace/trace.h"
 #include "tools/app/best_traces.h"
 #include "tools/app/certify.h"
@@ -15,6 +15,7 @@
 #include "tools/app/traces_replay.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
+#include "tools/cli/replayed_trace.h"
 #include "tools/cli/shared_options.h"
 
 namespace parallax::tools {
@@ -205,33 +206,6 @@ bool asks_for_models(const TracesOptions& options) {
          options.search.strategy != "auto";
 }
 
-std::string replayed_text(const ReplayedTrace& trace, const base::SourceFiles& files) {
-  if (trace.agrees) {
-    if (trace.hidden == 0) return fmt::format("trace {}: agrees\n", trace.number);
-    return fmt::format("trace {}: agrees, with values for {} atoms that it does not mention\n",
-                       trace.number, trace.hidden);
-  }
-  const auto place = trace.source ? files.place(*trace.source) : std::string();
-  return fmt::format("trace {}: fails at timepoint {}{}\n", trace.number, trace.timepoint,
-                     place.empty() ? "" : ", " + place);
-}
-
-nlohmann::ordered_json json_of(const ReplayedTrace& trace, const base::SourceFiles& files) {
-  if (trace.agrees) return {{"trace", trace.number}, {"agrees", true}, {"hidden", trace.hidden}};
-  nlohmann::ordered_json out = {{"trace", trace.number},
-                                {"agrees", false},
-                                {"timepoint", trace.timepoint},
-                                {"text", trace.reason}};
-  if (trace.source) {
-    const auto& file = files[trace.source->file];
-    const auto position = file.position(trace.source->begin);
-    out["file"] = file.name();
-    out["line"] = position.line;
-    out["column"] = position.column;
-  }
-  return out;
-}
-
 int replay(const TracesOptions& options, Invocation& invocation) {
   const bool as_json = invocation.options().json;
   const auto& files = invocation.files();
@@ -246,16 +220,7 @@ int replay(const TracesOptions& options, Invocation& invocation) {
   if (invocation.stopped()) invocation.remark("stopped before the last trace");
   const auto agree = result->seen - result->failed;
   if (as_json) {
-    auto list = nlohmann::ordered_json::array();
-    for (const auto& trace : result->traces) list.push_back(json_of(trace, files));
-    const nlohmann::ordered_json document = {{"status", result->sound ? "ok" : "error"},
-                                             {"traces", result->seen},
-                                             {"agree", agree},
-                                             {"fail", result->failed},
-                                             {"checked", result->checked},
-                                             {"complete", result->finished},
-                                             {"list", std::move(list)}};
-    invocation.document(base::json_text(document) + '\n');
+    invocation.document(replay_document(*result, files));
   } else {
     invocation.result(fmt::format(
         "{} replayed, {}: {} agree, {} fail, {} checked\n", base::counted(result->seen, "trace"),
@@ -280,9 +245,21 @@ std::unique_ptr<runtime::ListFormat> listing_of(const TracesOptions& options,
   return make_listing(options.model, options.listing, wanted == 1, compilation, invocation);
 }
 
-TraceWriter::Form form_of(const TracesOptions& options, runtime::ListFormat* listing) {
+TraceWriter::Form form_of(const TracesOptions& options, runtime::ListFormat* listing,
+                          runtime::OpenAtomFinder& open_atoms, bool has_constraints,
+                          const Invocation& invocation) {
+  // Text names no atom that can be open, and where all atoms tell traces apart none is.
+  const bool names_all = invocation.options().json || options.listing.format != "text";
+  const bool tells_apart = options.search.distinct == "all" && !has_constraints;
   return {options.listing.format, options.count,
-          options.search.sample > 0 ? 0 : options.search.limit, listing};
+          options.search.sample > 0 ? 0 : options.search.limit, listing,
+          names_all && !tells_apart ? &open_atoms : nullptr};
+}
+
+runtime::OpenAtomFinder open_atoms_of(const TracesOptions& options,
+                                      const compiler::CompiledModel& model) {
+  const auto make_solver = [] { return runtime::make_cadical_solver(&stop_flag()); };
+  return {model, make_solver, options.search.hits == "all"};
 }
 
 /// Lists, draws or counts the traces of what was compiled; with `best` these are the best ones of
@@ -311,8 +288,9 @@ int list_compiled(const TracesOptions& options, const compiler::Compilation& com
   const auto listing = listing_of(options, compilation, invocation);
   const bool lists = !options.count && !invocation.options().json;
   const StoppedText stopped(lists ? stopped_text(options.listing.format) : "");
-  TraceWriter writer(form_of(options, listing.get()), check ? &*check : nullptr, *certifier,
-                     invocation);
+  auto open_atoms = open_atoms_of(options, model);
+  TraceWriter writer(form_of(options, listing.get(), open_atoms, model.has_constraints, invocation),
+                     check ? &*check : nullptr, *certifier, invocation);
   std::optional<Ending> ending;
   if (model.has_constraints) {
     ending = list_plan_traces(options.search, model, *certifier, writer, invocation);
@@ -340,10 +318,16 @@ int list_witness(const TracesOptions& options, const compiler::Compilation& comp
   std::optional<TraceCheck> check;
   if (options.check) check.emplace(*compilation.typed, &stop_flag(), invocation.sink());
   const auto listing = listing_of(options, compilation, invocation);
-  TraceWriter writer(form_of(options, listing.get()), check ? &*check : nullptr, none, invocation);
   const auto& optimum = best.optimum();
+  // Among the best traces an atom may be settled that is open among all.
+  std::optional<compiler::CompiledModel> bounded;
+  if (runtime::has_hidden_atoms(model)) bounded = best.model_of_best(model);
+  auto open_atoms = open_atoms_of(options, bounded ? *bounded : model);
+  TraceWriter writer(form_of(options, listing.get(), open_atoms, model.has_constraints, invocation),
+                     check ? &*check : nullptr, none, invocation);
   if (optimum.witness) writer.write(*optimum.witness);
-  if (optimum.proved()) {
+  const bool proved = optimum.proved() && !writer.cut_short();
+  if (proved) {
     if (!options.certify.file.empty()) {
       best.certify(options.certify, options.model.models, model, invocation);
     } else {
@@ -352,7 +336,7 @@ int list_witness(const TracesOptions& options, const compiler::Compilation& comp
   }
   close_list(options, model, writer, listing.get(), {}, none, &best, seconds_since(start),
              invocation);
-  return optimum.proved() ? 0 : 4;
+  return proved ? 0 : 4;
 }
 
 /// Traces with the least values of the objectives.

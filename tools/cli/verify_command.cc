@@ -12,6 +12,7 @@
 #include "harness/config/ledger.h"
 #include "harness/report/text_layout.h"
 #include "runtime/cubes/cube_solver.h"
+#include "runtime/enumerate/open_atom_finder.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/certify.h"
 #include "tools/app/property_check.h"
@@ -39,6 +40,8 @@ struct VerifyOptions {
 /// The answer, before it is printed.
 struct Answer {
   std::optional<runtime::Trace> violation;
+  /// What the violation leaves open; none: not asked for, or stopped on the way.
+  std::optional<runtime::OpenAtoms> open;
   runtime::Exploration exploration = runtime::Exploration::kStopped;
   std::vector<std::string> bounds;
   std::optional<compiler::Timepoint> dead_end;  // length of a violating prefix that cannot go on
@@ -211,7 +214,9 @@ std::string answer_json(const compiler::CompiledModel& model, const Answer& answ
       }
     }
     out["performed"] = std::move(performed);
-    out["trace"] = base::parse_ordered_json(runtime::to_jsonl(*answer.violation));
+    if (answer.open) {
+      out["trace"] = base::parse_ordered_json(to_jsonl(*answer.violation, *answer.open));
+    }
   }
   if (answer.rests_on) {
     out["rests_on"] = nlohmann::ordered_json::array();
@@ -302,6 +307,11 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   if (invocation.options().json) {
+    if (answer.violation) {
+      runtime::OpenAtomFinder finder(
+          model, [] { return runtime::make_cadical_solver(&stop_flag()); }, false);
+      answer.open = finder.find(*answer.violation);
+    }
     invocation.document(answer_json(model, answer, wall.count()));
   } else {
     invocation.result(answer_text(model, answer) + rests_on_text(answer));

@@ -10,6 +10,7 @@
 #include "compiler/base/line_diff.h"
 #include "compiler/pipeline/compile.h"
 #include "runtime/session/solver_session.h"
+#include "runtime/trace/open_atoms.h"
 #include "tests/support/peer_examples.h"
 #include "tests/support/recorded_answer.h"
 #include "tools/app/trace_listing.h"
@@ -71,7 +72,7 @@ TEST_CASE("every model of every recorded answer is printed, byte for byte, and n
     std::map<std::string, int> difference;  // by text: printed here less recorded
     for (const auto& model : recorded.models()) --difference[joined(model.lines)];
     for (const auto& model : all_models(compiled.model)) {
-      ++difference[joined(format.lines(model))];
+      ++difference[joined(format.lines(model, {}))];
       ++compared;
     }
     for (const auto& entry : difference) {

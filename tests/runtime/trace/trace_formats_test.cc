@@ -11,6 +11,7 @@
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/trace/csv_format.h"
 #include "runtime/trace/itf_format.h"
+#include "runtime/trace/open_atoms.h"
 #include "runtime/trace/trace_reader.h"
 #include "tests/support/classic_models.h"
 #include "tests/support/csv_reader.h"
@@ -208,15 +209,15 @@ std::size_t check_formats(const CompiledModel& model) {
   while (static_cast<int>(traces.size()) < kTracesOfOneModel) {
     auto trace = enumerator.next();
     if (!trace) break;
-    const ItfFile file(itf.document(*trace, {}));
+    const ItfFile file(itf.document(*trace, {}, {}));
     CHECK(observed(trace_of(file)) == observed(*trace));
     check_picks(file);
-    const auto line = itf.trace(*trace);
+    const auto line = itf.trace(*trace, {});
     CHECK(line.find('\n') == line.size() - 1);
     CHECK(ItfFile(line).states == file.states);
-    CHECK(observed(read_back(itf.document(*trace, {}), model).at(0)) == observed(*trace));
+    CHECK(observed(read_back(itf.document(*trace, {}, {}), model).at(0)) == observed(*trace));
     itf_lines += line;
-    rows += csv.trace(*trace);
+    rows += csv.trace(*trace, {});
     traces.push_back(*std::move(trace));
   }
   const runtime::ListEnd end{static_cast<std::int64_t>(traces.size()), false, "stopped", {}, {}};

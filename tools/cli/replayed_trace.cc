@@ -1,0 +1,55 @@
+#include "tools/cli/replayed_trace.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "compiler/base/json.h"
+
+namespace parallax::tools {
+
+std::string replayed_text(const ReplayedTrace& trace, const base::SourceFiles& files) {
+  if (trace.agrees) {
+    if (trace.hidden == 0) return fmt::format("trace {}: agrees\n", trace.number);
+    return fmt::format("trace {}: agrees, with values for {} atoms that it does not mention\n",
+                       trace.number, trace.hidden);
+  }
+  const auto place = trace.source ? files.place(*trace.source) : std::string();
+  return fmt::format("trace {}: fails at timepoint {}{}\n", trace.number, trace.timepoint,
+                     place.empty() ? "" : ", " + place);
+}
+
+namespace {
+
+nlohmann::ordered_json replayed_json(const ReplayedTrace& trace, const base::SourceFiles& files) {
+  if (trace.agrees) return {{"trace", trace.number}, {"agrees", true}, {"hidden", trace.hidden}};
+  nlohmann::ordered_json out = {{"trace", trace.number},
+                                {"agrees", false},
+                                {"timepoint", trace.timepoint},
+                                {"text", trace.reason}};
+  if (trace.source) {
+    const auto& file = files[trace.source->file];
+    const auto position = file.position(trace.source->begin);
+    out["file"] = file.name();
+    out["line"] = position.line;
+    out["column"] = position.column;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string replay_document(const TracesReplay& replay, const base::SourceFiles& files) {
+  auto list = nlohmann::ordered_json::array();
+  for (const auto& trace : replay.traces) list.push_back(replayed_json(trace, files));
+  const nlohmann::ordered_json document = {{"status", replay.sound ? "ok" : "error"},
+                                           {"traces", replay.seen},
+                                           {"agree", replay.seen - replay.failed},
+                                           {"fail", replay.failed},
+                                           {"checked", replay.checked},
+                                           {"complete", replay.finished},
+                                           {"list", std::move(list)}};
+  return base::json_text(document) + '\n';
+}
+
+}  // namespace parallax::tools
