@@ -4,6 +4,7 @@
 
 #include <array>
 #include <charconv>
+#include <limits>
 #include <utility>
 
 #include "compiler/base/codes/names.h"
@@ -166,10 +167,10 @@ void Elaborator::report_constant(const Node& node, std::optional<SortId> expecte
   if (!constants.empty()) report.note(sort.declared, constants);
 }
 
-Elaborator::Value Elaborator::number(const Node& node) {
-  const auto text = ast_->name(node);
+Elaborator::Value Elaborator::number(const Node& node, const Node* minus) {
+  const auto text = (minus != nullptr ? "-" : "") + std::string(ast_->name(node));
   Term term;
-  term.source = source(node);
+  term.source = source(minus != nullptr ? *minus : node);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), term.integer);
   if (error == std::errc::result_out_of_range) {
     sink_.error(codes::kNumberTooLarge, source(node), quoted(node));
@@ -358,7 +359,11 @@ bool Elaborator::check_integers(Operator op, TermId left, TermId right) {
 Elaborator::Value Elaborator::negation_of_term(const Node& node, TermId operand) {
   if (!check_integer(node.op, operand)) return failure();
   Term& term = model_.terms[operand];
-  if (term.kind == TermKind::kInteger) {  // a literal such as -1
+  if (term.kind == TermKind::kInteger) {  // a literal such as -(-1)
+    if (term.integer == std::numeric_limits<std::int64_t>::min()) {
+      sink_.error(codes::kNumberTooLarge, source(node), quoted(node));
+      return failure();
+    }
     term.integer = -term.integer;
     term.source = source(node);
     return {operand.index(), false};

@@ -110,6 +110,14 @@ void Elaborator::visit(NodeId id, Position position, std::optional<SortId> expec
     }
     return;
   }
+  if (node.kind == NodeKind::kUnary && node.op == Operator::kNegate &&
+      position != Position::kFormula) {
+    const Node& operand = (*ast_)[ast_->child(node, 0)];
+    if (operand.kind == NodeKind::kNumber) {
+      values_.push_back(number(operand, &node));
+      return;
+    }
+  }
   Frame frame;
   frame.node = id;
   frame.position = position;

@@ -94,7 +94,8 @@ class Elaborator {
   Value name(const Node& node, Position position, std::optional<SortId> expected);
   Value variable(const Node& node, std::optional<SortId> expected);
   Value constant(const Node& node, std::optional<SortId> expected);
-  Value number(const Node& node);
+  /// A number, below a sign: the least one has no positive counterpart.
+  Value number(const Node& node, const Node* minus = nullptr);
   Value apply(const Frame& frame, const Node& node);
   Value arithmetic(const Node& node, TermId left, TermId right);
   Value negation_of_term(const Node& node, TermId operand);

@@ -100,6 +100,8 @@ TEST_CASE("wrong names, sorts and shapes are located and explained") {
       {"[time] time = 0.5.", "E2111 12:15-17", "`0.5` is not an integer"},
       {"[time] time^2 = 4.", "E2112 12:8-13", "`^` is not supported"},
       {"[time] time = 99999999999999999999.", "E1002 12:15-34", "64 bits"},
+      {"[time] time = -9223372036854775809.", "E1002 12:16-34", "64 bits"},
+      {"[time] time = -(-9223372036854775808).", "E1002 12:15-37", "64 bits"},
   };
   for (const auto& c : cases) {
     CAPTURE(c.formula);
@@ -107,6 +109,13 @@ TEST_CASE("wrong names, sorts and shapes are located and explained") {
     CHECK(checked.places() == Strings{c.place});
     CHECK_MESSAGE(checked.text().find(c.text) != std::string::npos, checked.text());
   }
+}
+
+TEST_CASE("the least number can be written, though its counterpart is none") {
+  CHECK(check("[time] time > -9223372036854775808.").model);
+  CHECK(check("sort v: integer\nrange v -9223372036854775808 -9223372036854775807\npredicate Q(v)\n"
+              "Q(-9223372036854775808).")
+            .model);
 }
 
 TEST_CASE("several errors in one formula are all reported, and later formulas are checked") {
