@@ -33,6 +33,9 @@ struct TracesOptions {
   CertifyOption certify;
 };
 
+/// Conflicts that it may cost to find out what a single trace leaves open.
+constexpr std::int64_t kBriefly = 20'000;
+
 /// Message for a list that is complete and empty.
 void point_to_explanation(const TracesOptions& options, const Invocation& invocation) {
   std::string command = "parallax explain";
@@ -245,21 +248,18 @@ std::unique_ptr<runtime::ListFormat> listing_of(const TracesOptions& options,
   return make_listing(options.model, options.listing, wanted == 1, compilation, invocation);
 }
 
-TraceWriter::Form form_of(const TracesOptions& options, runtime::ListFormat* listing,
-                          runtime::OpenAtomFinder& open_atoms, bool has_constraints,
-                          const Invocation& invocation) {
-  // Text names no atom that can be open, and where all atoms tell traces apart none is.
-  const bool names_all = invocation.options().json || options.listing.format != "text";
-  const bool tells_apart = options.search.distinct == "all" && !has_constraints;
-  return {options.listing.format, options.count,
-          options.search.sample > 0 ? 0 : options.search.limit, listing,
-          names_all && !tells_apart ? &open_atoms : nullptr};
+/// Text names no atom that can be open, and where all atoms tell traces apart none is.
+bool names_open_atoms(const TracesOptions& options, const compiler::CompiledModel& model,
+                      const Invocation& invocation) {
+  if (!invocation.options().json && options.listing.format == "text") return false;
+  return model.has_constraints || options.search.distinct != "all";
 }
 
-runtime::OpenAtomFinder open_atoms_of(const TracesOptions& options,
-                                      const compiler::CompiledModel& model) {
-  const auto make_solver = [] { return runtime::make_cadical_solver(&stop_flag()); };
-  return {model, make_solver, options.search.hits == "all"};
+/// `open_atoms` may be null.
+TraceWriter::Form form_of(const TracesOptions& options, runtime::ListFormat* listing,
+                          runtime::OpenAtomFinder* open_atoms) {
+  return {options.listing.format, options.count,
+          options.search.sample > 0 ? 0 : options.search.limit, listing, open_atoms};
 }
 
 /// Lists, draws or counts the traces of what was compiled; with `best` these are the best ones of
@@ -288,8 +288,12 @@ int list_compiled(const TracesOptions& options, const compiler::Compilation& com
   const auto listing = listing_of(options, compilation, invocation);
   const bool lists = !options.count && !invocation.options().json;
   const StoppedText stopped(lists ? stopped_text(options.listing.format) : "");
-  auto open_atoms = open_atoms_of(options, model);
-  TraceWriter writer(form_of(options, listing.get(), open_atoms, model.has_constraints, invocation),
+  std::optional<runtime::OpenAtomFinder> open_atoms;
+  if (names_open_atoms(options, model, invocation)) {
+    const auto make_solver = [] { return runtime::make_cadical_solver(&stop_flag()); };
+    open_atoms.emplace(model, make_solver, options.search.hits == "all");
+  }
+  TraceWriter writer(form_of(options, listing.get(), open_atoms ? &*open_atoms : nullptr),
                      check ? &*check : nullptr, *certifier, invocation);
   std::optional<Ending> ending;
   if (model.has_constraints) {
@@ -321,9 +325,16 @@ int list_witness(const TracesOptions& options, const compiler::Compilation& comp
   const auto& optimum = best.optimum();
   // Among the best traces an atom may be settled that is open among all.
   std::optional<compiler::CompiledModel> bounded;
-  if (runtime::has_hidden_atoms(model)) bounded = best.model_of_best(model);
-  auto open_atoms = open_atoms_of(options, bounded ? *bounded : model);
-  TraceWriter writer(form_of(options, listing.get(), open_atoms, model.has_constraints, invocation),
+  std::optional<runtime::OpenAtomFinder> open_atoms;
+  if (names_open_atoms(options, model, invocation) && runtime::has_hidden_atoms(model)) {
+    bounded = best.model_of_best(model);
+    // The best so far is told after a stop, too.
+    const auto make_solver = [] {
+      return runtime::make_limited_solver(runtime::make_cadical_solver(), kBriefly);
+    };
+    open_atoms.emplace(bounded ? *bounded : model, make_solver, false);
+  }
+  TraceWriter writer(form_of(options, listing.get(), open_atoms ? &*open_atoms : nullptr),
                      check ? &*check : nullptr, none, invocation);
   if (optimum.witness) writer.write(*optimum.witness);
   const bool proved = optimum.proved() && !writer.cut_short();

@@ -40,7 +40,7 @@ struct VerifyOptions {
 /// The answer, before it is printed.
 struct Answer {
   std::optional<runtime::Trace> violation;
-  /// What the violation leaves open; none: not asked for, or stopped on the way.
+  /// What the violation leaves open; none: not asked for, or too hard to tell.
   std::optional<runtime::OpenAtoms> open;
   runtime::Exploration exploration = runtime::Exploration::kStopped;
   std::vector<std::string> bounds;
@@ -308,8 +308,11 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   if (invocation.options().json) {
     if (answer.violation) {
-      runtime::OpenAtomFinder finder(
-          model, [] { return runtime::make_cadical_solver(&stop_flag()); }, false);
+      // A violation that was found is told after a stop, too.
+      const auto make_solver = [] {
+        return runtime::make_limited_solver(runtime::make_cadical_solver(), kProvable);
+      };
+      runtime::OpenAtomFinder finder(model, make_solver, false);
       answer.open = finder.find(*answer.violation);
     }
     invocation.document(answer_json(model, answer, wall.count()));
