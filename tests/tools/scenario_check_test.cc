@@ -62,6 +62,46 @@ TEST_CASE("check names ignored fluents that the model leaves open at the start")
   }
 }
 
+TEST_CASE("check warns of grips that the engine is known to let slip at the scenario's step") {
+  const CliFixture cli;
+  cli.replace("world.yaml", "    size_m: [0.07, 0.07, 0.07]\n    mass_kg: 0.3",
+              "    ring: {diameter_m: 0.07, height_m: 0.07, wall_m: 0.008, sides: 8}\n"
+              "    mass_kg: 0.6");
+  const auto scenario = cli.read("scenario.yaml");
+  const auto at_step = [&](const std::string& more) {
+    cli.write("scenario.yaml", scenario + "\nworld: {include: world.yaml, " + more + "}\n");
+    return check(cli, 0);
+  };
+  const auto said = at_step("solver: {timestep_s: 0.004}");
+  CHECK(has(said, "world.yaml:"));
+  CHECK(has(said,
+            "warning[W5310]: at steps of 4 ms ode may let go of `box`, which is gripped as a ring: "
+            "of grips that hold twice what they have to, 1 of 20 slipped at 4 ms"));
+  CHECK(has(said,
+            "help: Write `world: {solver: {timestep_s: 0.002}}`, at which none slipped, or "
+            "`simulator: {engine: mujoco}`"));
+  CHECK_FALSE(has(at_step("solver: {timestep_s: 0.002}"), "W5310"));
+  // As light as this the grip holds more than five times what it has to.
+  CHECK_FALSE(has(at_step("solver: {timestep_s: 0.004}, bodies: {box: {mass_kg: 0.3}}"), "W5310"));
+  CHECK_FALSE(has(at_step("solver: {timestep_s: 0.004}, robot: {opening_m: 0.02}"), "W5310"));
+}
+
+TEST_CASE("check warns of cylinders in mujoco above a millisecond") {
+  const CliFixture cli;
+  cli.replace("world.yaml", "    size_m: [0.07, 0.07, 0.07]\n    mass_kg: 0.3",
+              "    cylinder: {radius_m: 0.035, length_m: 0.07}\n    mass_kg: 0.6");
+  CHECK_FALSE(has(check(cli, 0), "W5310"));  // ode
+  cli.write("scenario.yaml", cli.read("scenario.yaml") + "\nsimulator: {engine: mujoco}\n");
+  const auto said = cli.parallax({"check", "scenario.yaml"});
+  CAPTURE(said.err);
+  if (said.code == 3 && has(said.err, "E5145")) return;  // this build has no MuJoCo
+  CHECK(said.code == 0);
+  CHECK(has(said.err,
+            "gripped as a cylinder: of grips that hold twice what they have to, 6 of 120 "
+            "slipped at 2 ms"));
+  CHECK(has(said.err, "`simulator: {engine: ode}`"));
+}
+
 TEST_CASE("check says which horizon would do where the plan needs a longer one") {
   const CliFixture cli;
   cli.replace("scenario.yaml", "horizon: 6", "horizon: 3");

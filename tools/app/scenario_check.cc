@@ -3,17 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 
 #include "compiler/base/ascii.h"
 #include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/scenarios.h"
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/loop_stream.h"
 #include "harness/campaign/start_check.h"
 #include "harness/discrete/model_simulator.h"
 #include "harness/robot/ode_simulator.h"
+#include "harness/world/arguments.h"
+#include "harness/world/grip_limits.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/caused_fluents.h"
 #include "tools/app/closed_loop.h"
@@ -201,11 +205,52 @@ void check_before_executions(const ScenarioModel& loaded, Context& context) {
   }
 }
 
+/// Where engine, step and the form of what is gripped are known to let it slip.
+void warn_of_grips(const harness::Scenario& scenario, base::DiagnosticSink& sink) {
+  if (!scenario.simulator.is_built_in()) return;
+  const auto& world = scenario.world;
+  std::map<std::string, harness::GripRange> ranges;
+  for (const auto& body : world.bodies) {
+    auto& range = ranges[body.name];
+    for (const auto& [variable, interval] : scenario.sampling) {
+      if (variable != body.name + ".mass") continue;
+      range.lightest_kg = interval.lower;
+      range.heaviest_kg = interval.upper;
+    }
+    if (body.grasp) range.gentlest_n = range.firmest_n = body.grasp->effort_n;
+    for (const auto& action : scenario.actions) {
+      const auto given = action.arguments.find("effort_n");
+      const auto effort =
+          given == action.arguments.end() ? std::nullopt : harness::as_number(given->second);
+      if (!effort || !body.grasp) continue;
+      range.gentlest_n = std::min(*range.gentlest_n, *effort);
+      range.firmest_n = std::max(*range.firmest_n, *effort);
+    }
+  }
+  constexpr double kMs = 1000.0;
+  for (const auto& grip : harness::doubtful_grips(world, ranges)) {
+    const auto at = scenario.body_sources.find(grip.body);
+    const auto& place =
+        at != scenario.body_sources.end() ? at->second : base::SourceRange{scenario.source, 0, 0};
+    const auto other = world.engine == harness::EngineKind::kOde ? harness::EngineKind::kMujoco
+                                                                 : harness::EngineKind::kOde;
+    auto warning = sink.warning(codes::kDoubtfulGrip, place, kMs * world.solver.timestep_s,
+                                to_string(world.engine), grip.body, to_string(grip.form),
+                                grip.slipped, grip.runs, kMs * grip.measured_s);
+    warning.help(fmt::format(
+        "Write `world: {{solver: {{timestep_s: {:g}}}}}`, at which none slipped, or `simulator: "
+        "{{engine: {}}}`: what slips here is the solver's doing, not the model's "
+        "(docs/physics.md, \"Grips\").",
+        grip.sound_s, to_string(other)));
+  }
+}
+
 }  // namespace
 
 void check_before_run(const ScenarioModel& loaded, Context& context) {
   auto& sink = context.sink();
   const auto& scenario = loaded.scenario;
+  warn_of_grips(scenario, sink);
   const auto& model = loaded.compilation.model;
   std::vector<harness::CausedFluent> caused;
   if (scenario.simulator.is_built_in() && scenario.mapping && loaded.compilation.typed) {
