@@ -305,7 +305,12 @@ class MjcfImporter {
     if (joints.empty()) {
       one.name = unused_joint(names_[i] + "_weld");
     } else if (model_.joints[joints.front()].type == MjcfJointType::kFree) {
-      return;
+      const MjcfJoint& free = model_.joints[joints.front()];
+      const std::string name = free.name.empty() ? names_[i] : free.name;
+      if (free.damping != 0.0 || free.friction != 0.0) {
+        leave("damping and friction of free joints", name, places_.joint(i, 0));
+      }
+      return note_joint(free, name, places_.joint(i, 0));
     } else {
       set_joint(model_.joints[joints.front()], i, one);
     }
@@ -338,11 +343,14 @@ class MjcfImporter {
     one.high = joint.is_limited ? joint.high : kNone;
     one.damping = joint.damping;
     one.friction = joint.friction;
-    if (joint.stiffness != 0.0) leave("springs of joints", one.name, one.offset);
-    if (joint.armature != 0.0) {
-      leave("inertia of what drives joints (armature)", one.name, one.offset);
-    }
-    if (joint.is_soft) leave("softness of joints (solref, solimp)", one.name, one.offset);
+    note_joint(joint, one.name, one.offset);
+  }
+
+  void note_joint(const MjcfJoint& joint, const std::string& name, std::size_t offset) {
+    if (joint.stiffness != 0.0) leave("springs of joints", name, offset);
+    if (joint.armature != 0.0) leave("inertia of what drives joints (armature)", name, offset);
+    if (joint.is_soft) leave("softness of joints (solref, solimp)", name, offset);
+    if (joint.has_margin) leave("margins of stops", name, offset);
   }
 
   void note_rest() {

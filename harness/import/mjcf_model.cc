@@ -55,7 +55,7 @@ class Fields {
   }
   void one(MjcfJoint& j) {
     all(j.name, j.body, j.type, j.p_BJ, j.axis_B, j.is_limited, j.low, j.high, j.damping,
-        j.friction, j.stiffness, j.armature, j.is_soft);
+        j.friction, j.stiffness, j.armature, j.is_soft, j.has_margin);
   }
   void one(MjcfGeom& g) {
     all(g.name, g.body, g.form, g.size, g.frame, g.mesh, g.contact_type, g.contact_affinity,

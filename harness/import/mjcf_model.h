@@ -39,7 +39,8 @@ struct MjcfJoint {
   bool is_limited = false;
   double low = 0.0, high = 0.0;  // from where it stands by default
   double damping = 0.0, friction = 0.0, stiffness = 0.0, armature = 0.0;
-  bool is_soft = false;  // solver parameters of its own
+  bool is_soft = false;     // solver parameters of its own
+  bool has_margin = false;  // its stops act before they are met
 };
 
 enum class MjcfForm : std::uint8_t {

@@ -171,6 +171,7 @@ class Translator {
     joint.friction = model_.dof_frictionloss[dof];
     joint.armature = model_.dof_armature[dof];
     joint.stiffness = model_.jnt_stiffness[i];
+    joint.has_margin = model_.jnt_margin[i] != 0.0;
     joint.is_soft = is_soft(model_.jnt_solref + mjNREF * i, model_.jnt_solimp + mjNIMP * i) ||
                     is_soft(model_.dof_solref + mjNREF * dof, model_.dof_solimp + mjNIMP * dof);
   }
@@ -218,7 +219,8 @@ class Translator {
     geom.friction = model_.geom_friction[3 * i];
     geom.has_priority = model_.geom_priority[i] != 0;
     geom.has_margin = model_.geom_margin[i] != 0.0 || model_.geom_gap[i] != 0.0;
-    geom.is_soft = is_soft(model_.geom_solref + mjNREF * i, model_.geom_solimp + mjNIMP * i);
+    geom.is_soft = is_soft(model_.geom_solref + mjNREF * i, model_.geom_solimp + mjNIMP * i) ||
+                   model_.geom_solmix[i] != 1.0;
   }
 
   void add_mesh(int i) {
@@ -258,11 +260,12 @@ class Translator {
     add_all("data of the file's own (custom)", "custom", model_.ntext, model_.name_textadr);
     add_all("data of the file's own (custom)", "custom", model_.ntuple, model_.name_tupleadr);
     const mjOption& option = model_.opt;
-    if (option.density != 0.0 || option.viscosity != 0.0) {
-      add("forces of air and water (density, viscosity)", "option", "option");
+    if (option.density != 0.0 || option.viscosity != 0.0 ||
+        std::any_of(option.wind, option.wind + 3, [](mjtNum x) { return x != 0.0; })) {
+      add("forces of air and water (density, viscosity, wind)", "option", "option");
     }
     add_options(option);
-    add_flags(option.disableflags);
+    add_flags(option);
   }
 
   /// How the engine counts, where the file says so: ours has a `solver` of its own.
@@ -280,22 +283,41 @@ class Translator {
     note(own.iterations != usual.iterations, "iterations");
     note(own.tolerance != usual.tolerance, "tolerance");
     note(own.noslip_iterations != usual.noslip_iterations, "noslip_iterations");
+    note(own.noslip_tolerance != usual.noslip_tolerance, "noslip_tolerance");
+    note(own.mpr_iterations != usual.mpr_iterations, "mpr_iterations");
+    note(own.mpr_tolerance != usual.mpr_tolerance, "mpr_tolerance");
+    note(own.jacobian != usual.jacobian, "jacobian");
+    note(own.apirate != usual.apirate, "apirate");
+    note(own.o_margin != usual.o_margin, "o_margin");
+    note(!std::equal(own.o_solref, own.o_solref + mjNREF, usual.o_solref), "o_solref");
+    note(!std::equal(own.o_solimp, own.o_solimp + mjNIMP, usual.o_solimp), "o_solimp");
+    note(!std::equal(own.magnetic, own.magnetic + 3, usual.magnetic), "magnetic");
     if (own.collision != usual.collision) {
       add("the choice of which contacts there are (collision)", "option", "option");
     }
   }
 
-  /// Those that change what a world does, but for gravity, which is taken over.
-  void add_flags(int flags) {
+  /// Flags that are not as usual, but for gravity and parents' contacts, which are taken over.
+  void add_flags(const mjOption& option) {
     struct Flag {
       int bit;
       const char* name;
     };
-    for (const Flag& flag : {Flag{mjDSBL_CONSTRAINT, "constraint"},
-                             Flag{mjDSBL_FRICTIONLOSS, "frictionloss"}, Flag{mjDSBL_LIMIT, "limit"},
-                             Flag{mjDSBL_CONTACT, "contact"}, Flag{mjDSBL_PASSIVE, "passive"}}) {
-      if ((flags & flag.bit) != 0)
+    for (const Flag& flag :
+         {Flag{mjDSBL_CONSTRAINT, "constraint"}, Flag{mjDSBL_EQUALITY, "equality"},
+          Flag{mjDSBL_FRICTIONLOSS, "frictionloss"}, Flag{mjDSBL_LIMIT, "limit"},
+          Flag{mjDSBL_CONTACT, "contact"}, Flag{mjDSBL_PASSIVE, "passive"},
+          Flag{mjDSBL_CLAMPCTRL, "clampctrl"}, Flag{mjDSBL_WARMSTART, "warmstart"},
+          Flag{mjDSBL_ACTUATION, "actuation"}, Flag{mjDSBL_REFSAFE, "refsafe"},
+          Flag{mjDSBL_SENSOR, "sensor"}}) {
+      if ((option.disableflags & flag.bit) != 0)
         add("parts of the engine that are switched off", "flag", flag.name);
+    }
+    for (const Flag& flag : {Flag{mjENBL_OVERRIDE, "override"}, Flag{mjENBL_ENERGY, "energy"},
+                             Flag{mjENBL_FWDINV, "fwdinv"}, Flag{mjENBL_SENSORNOISE, "sensornoise"},
+                             Flag{mjENBL_MULTICCD, "multiccd"}}) {
+      if ((option.enableflags & flag.bit) != 0)
+        add("parts of the engine that are switched on", "flag", flag.name);
     }
   }
 

@@ -9,6 +9,7 @@
 #include "compiler/base/utf8.h"
 #include "harness/import/description.h"
 #include "harness/import/mesh.h"
+#include "harness/import/mjcf_census.h"
 #include "harness/import/plain_path.h"
 
 namespace parallax::harness {
@@ -213,6 +214,8 @@ class FileNamer {
     const XmlOutline outline = outline_of(text);
     if (outline.fault) return fail(outline.fault->offset, outline.fault->message);
     note_compiler(outline);
+    list_unread_mjcf(
+        outline, [&](std::size_t offset) { return out_.place_of_included(offset); }, left_out_);
     for (const XmlElement& element : outline.elements) {
       if (element.offset < at_) continue;  // in what was taken out
       edit(element);

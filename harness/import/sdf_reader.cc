@@ -220,9 +220,10 @@ class SdfReader {
   SdfReader(const ImportInput& input, const XmlOutline& outline, ImportedWorld& world,
             const IncludeGate& gate)
       : input_(input), places_(outline), world_(world) {
-    list_rest(outline, kTaken, std::nullopt, out_.left_out);
+    list_rest(outline, kTaken, {}, out_.left_out);
     for (const auto& [text, place] : gate.texts()) {
-      list_rest(outline_of(text), kTaken, place, out_.left_out);
+      list_rest(
+          outline_of(text), kTaken, [at = place](std::size_t) { return at; }, out_.left_out);
     }
     X_WI_.translation() = input.p_WI;
     X_WI_.linear() = Eigen::AngleAxisd(input.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();

@@ -227,7 +227,7 @@ class UrdfReader {
     out_.joints.push_back(std::move(one));
   }
 
-  void note_rest() { list_rest(outline_, kTaken, std::nullopt, out_.left_out); }
+  void note_rest() { list_rest(outline_, kTaken, {}, out_.left_out); }
 
   const ImportInput& input_;
   const XmlOutline& outline_;

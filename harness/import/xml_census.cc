@@ -47,13 +47,22 @@ bool is_value(std::string_view text, std::string_view value) {
   return all(text, a) && all(value, b) && a == b;
 }
 
+/// Is `name`, or `name=value`, among the words?
+bool has_pair(std::string_view words, std::string_view name, std::string_view value) {
+  return any_word(words, [&](std::string_view word) {
+    const auto equals = word.find('=');
+    if (word.substr(0, equals) != name) return false;
+    return equals == word.npos || is_value(value, word.substr(equals + 1));
+  });
+}
+
 enum class Fate : std::uint8_t { kRead, kTold, kLeft };
 
 class Census {
  public:
   Census(const XmlOutline& outline, std::span<const TakenOf> taken,
-         std::optional<std::size_t> place, LeftOutList& left_out)
-      : outline_(outline), taken_(taken), place_(place), left_out_(left_out) {}
+         const std::function<std::size_t(std::size_t)>& place_of, LeftOutList& left_out)
+      : outline_(outline), taken_(taken), place_of_(place_of), left_out_(left_out) {}
 
   void run() {
     const auto& all = outline_.elements;
@@ -68,7 +77,9 @@ class Census {
       const TakenOf* taken = entry_of(element.tag);
       for (const XmlAttribute& attribute : element.attributes) {
         if (attribute.name.starts_with("xmlns")) continue;
-        if (taken != nullptr && has_word(taken->attributes, attribute.name)) continue;
+        if (taken != nullptr && has_pair(taken->attributes, attribute.name, attribute.value)) {
+          continue;
+        }
         add(fmt::format("attributes `{}` of <{}>", attribute.name.substr(0, 40),
                         element.tag.substr(0, 40)),
             element);
@@ -90,12 +101,10 @@ class Census {
     if (const TakenOf* taken = entry_of(around.tag)) {
       if (has_word(taken->told, element.tag)) return Fate::kTold;
       if (has_word(taken->often, element.tag)) return Fate::kRead;
-      const bool reads = any_word(taken->once, [&](std::string_view word) {
-        const auto equals = word.find('=');
-        if (word.substr(0, equals) != element.tag) return false;
-        return equals == word.npos || is_value(element.text, word.substr(equals + 1));
-      });
-      if (reads && once_.emplace(*element.parent, element.tag).second) return Fate::kRead;
+      if (has_pair(taken->once, element.tag, element.text) &&
+          once_.emplace(*element.parent, element.tag).second) {
+        return Fate::kRead;
+      }
     }
     add(fmt::format("elements <{}> of <{}>", element.tag.substr(0, 40), around.tag.substr(0, 40)),
         element);
@@ -107,12 +116,13 @@ class Census {
     const XmlElement* named = &element;
     while (named->name.empty() && named->parent) named = &outline_.elements[*named->parent];
     const auto name = named->name.empty() ? named->tag : named->name;
-    left_out_.add(what, std::string(name.substr(0, 120)), place_.value_or(element.offset));
+    left_out_.add(what, std::string(name.substr(0, 120)),
+                  place_of_ ? place_of_(element.offset) : element.offset);
   }
 
   const XmlOutline& outline_;
   std::span<const TakenOf> taken_;
-  std::optional<std::size_t> place_;
+  const std::function<std::size_t(std::size_t)>& place_of_;
   LeftOutList& left_out_;
   std::set<std::pair<std::size_t, std::string_view>> once_;
 };
@@ -120,8 +130,9 @@ class Census {
 }  // namespace
 
 void list_rest(const XmlOutline& outline, std::span<const TakenOf> taken,
-               std::optional<std::size_t> place, LeftOutList& left_out) {
-  Census(outline, taken, place, left_out).run();
+               const std::function<std::size_t(std::size_t offset)>& place_of,
+               LeftOutList& left_out) {
+  Census(outline, taken, place_of, left_out).run();
 }
 
 }  // namespace parallax::harness

@@ -73,7 +73,7 @@ TEST_CASE("pictures, skins and height fields are not opened, wherever they are s
                                                         box_at(0, "box") + "</worldbody>"));
   CHECK(scenario.has_value());
   const auto reports = workspace.reports();
-  REQUIRE(reports.size() == 4);
+  REQUIRE(reports.size() == 5);
   for (const char* kind : {"3 of them: pictures (textures); the first is `pipe.png`",
                            "1 of them: skins; the first is `s`", "2 of them: height fields"}) {
     CHECK_MESSAGE(std::any_of(reports.begin(), reports.end(),

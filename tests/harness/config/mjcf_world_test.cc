@@ -228,15 +228,20 @@ TEST_CASE("a workshop in MJCF: an included file, defaults, a mesh, and what is l
       "  bodies: {varnish: {settable: [x, y]}, cup: {size_m: [0.1, 0.1, 0.1], mass_kg: 0.2, "
       "position_m: [5, 5, 0.05]}}\n");
   REQUIRE(scenario.has_value());
-  CHECK(shop.workspace.reports() ==
-        std::vector<std::string>{
-            "W5144 at 19:5: not taken over, 1 of them: pictures (textures); the first is `grain`",
-            "W5144 at 21:5: not taken over, 1 of them: materials; the first is `beech`",
-            "W5144 at 26:5: not taken over, 1 of them: lights; the first is `lamp`",
-            "W5144 at 27:5: not taken over, 1 of them: cameras; the first is `door`",
-            "W5144 at 35:7: not taken over, 1 of them: sites; the first is `vice`",
-            "W5144 at 65:7: not taken over, 1 of them: visuals; the first is `label`",
-            "W5144 at 71:5: not taken over, 2 of them: sensors; the first is `drawer_opening`"});
+  CHECK(
+      shop.workspace.reports() ==
+      std::vector<std::string>{
+          "W5144 at 6:3: not taken over, 1 of them: elements <statistic> of <mujoco>; the first is "
+          "`mujoco`",
+          "W5144 at 19:5: not taken over, 1 of them: pictures (textures); the first is `grain`",
+          "W5144 at 21:5: not taken over, 1 of them: materials; the first is `beech`",
+          "W5144 at 26:5: not taken over, 1 of them: lights; the first is `lamp`",
+          "W5144 at 27:5: not taken over, 1 of them: cameras; the first is `door`",
+          "W5144 at 35:7: not taken over, 1 of them: sites; the first is `vice`",
+          "W5144 at 65:7: not taken over, 1 of them: visuals; the first is `label`",
+          "W5144 at 65:7: not taken over, 1 of them: attributes `rgba` of <geom>; the first is "
+          "`label`",
+          "W5144 at 71:5: not taken over, 2 of them: sensors; the first is `drawer_opening`"});
   const WorldSpec& world = scenario->world;
   const Oracle oracle(kShipped / "worlds/workshop.xml");
   CHECK(compare_bodies(world, oracle, kOrigin) == 4);
