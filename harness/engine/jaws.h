@@ -15,7 +15,8 @@ class Jaws {
   Jaws(const ArmSpec& spec, const PhysicsWorld& world);
 
   const Eigen::Vector3d& tool_P() const { return tool_P_; }  // the middle between the pads [m]
-  const Eigen::Vector3d& pad_line_P() const { return pad_line_P_; }  // far to near, unit
+  /// Unit vector along the way of the finger, from the far pad to the near one.
+  const Eigen::Vector3d& pad_line_P() const { return pad_line_P_; }
   /// Sign of the way of the finger that narrows the gap.
   double closing_sign() const { return closing_sign_; }
   /// Gap between the pads' inner faces at this position of the finger's joint, and the reverse.

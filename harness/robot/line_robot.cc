@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "compiler/base/contract.h"
+#include "harness/engine/extent_along.h"
 
 namespace parallax::harness {
 namespace {
@@ -22,16 +23,6 @@ BodyId body_named(const PhysicsWorld& world, std::string_view name) {
   return *id;
 }
 
-/// Half the extent of a body along `axis`, and the offset of its middle, at the default placement.
-struct Extent {
-  double middle_m = 0.0, half_m = 0.0;
-};
-
-Extent extent_along(const Eigen::Vector3d& axis, const Bounds& bounds) {
-  return {axis.dot(0.5 * (bounds.low + bounds.high)),
-          0.5 * axis.cwiseAbs().dot(bounds.high - bounds.low)};
-}
-
 }  // namespace
 
 LineRobot::LineRobot(const WorldSpec& spec, PhysicsWorld& world) : world_(world) {
@@ -46,8 +37,8 @@ LineRobot::LineRobot(const WorldSpec& spec, PhysicsWorld& world) : world_(world)
 
   // The world is fresh, hence at its default placement.
   const Eigen::Vector3d axis = joint(LineAxis::kFinger).axis_W.normalized();
-  const Extent near = extent_along(axis, world.bounds(near_pad_));
-  const Extent far = extent_along(axis, world.bounds(far_pad_));
+  const AxisExtent near = extent_along(world, near_pad_, axis);
+  const AxisExtent far = extent_along(world, far_pad_, axis);
   closing_sign_ = near.middle_m < far.middle_m ? -1.0 : 1.0;
   open_gap_m_ = std::abs(near.middle_m - far.middle_m) - near.half_m - far.half_m;
 }
