@@ -77,7 +77,10 @@ std::optional<std::uint32_t> GroundModel::event_number(GroundTermId term) const 
   return found->second;
 }
 
+/// Two bits for the kind, 32 for the timepoint, 30 for the number of the fluent or event.
 std::uint64_t GroundModel::timed_key(AtomKind kind, std::uint32_t index, Timepoint t) {
+  PARALLAX_REQUIRE(static_cast<unsigned>(kind) < 4U && index < (1U << 30U),
+                   "timed atoms are of four kinds, and fewer than 2^30 of each");
   return (static_cast<std::uint64_t>(kind) << 62U) ^
          (static_cast<std::uint64_t>(static_cast<std::uint32_t>(t)) << 30U) ^ index;
 }

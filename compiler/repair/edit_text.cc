@@ -1,6 +1,7 @@
 #include "compiler/repair/edit_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 

@@ -1,6 +1,7 @@
 #include "compiler/sema/name_advice.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <vector>

@@ -1,6 +1,7 @@
 #include "harness/campaign/start_law.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 

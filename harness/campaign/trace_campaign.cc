@@ -1,6 +1,7 @@
 #include "harness/campaign/trace_campaign.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>

@@ -1,6 +1,7 @@
 #include "harness/confidence/criterion.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "harness/discrete/model_simulator.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>

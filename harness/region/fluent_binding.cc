@@ -1,6 +1,7 @@
 #include "harness/region/fluent_binding.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

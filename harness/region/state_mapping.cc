@@ -1,6 +1,7 @@
 #include "harness/region/state_mapping.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>

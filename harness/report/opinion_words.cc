@@ -1,6 +1,7 @@
 #include "harness/report/opinion_words.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -146,17 +147,17 @@ std::string opinion_json(const SecondOpinion& opinion) {
     if (!one.other.empty()) each.back()["words"] = one.other;
   }
   const OrderedJson out = {{"first", opinion.first},
-                    {"other", opinion.other},
-                    {"causes", std::move(causes)},
-                    {"clean",
-                     {{"asked", opinion.clean_asked},
-                      {"clean", opinion.count(false, Answer::kClean)},
-                      {"discrepancies", opinion.count(false, Answer::kDiscrepancy)},
-                      {"unanswered", opinion.count(false, Answer::kNone)},
-                      {"confidence", opinion.level},
-                      {"disagreement_below", opinion.disagreement_upper()}}},
-                    {"simulations", std::move(each)},
-                    {"words", opinion_sentences(opinion)}};
+                           {"other", opinion.other},
+                           {"causes", std::move(causes)},
+                           {"clean",
+                            {{"asked", opinion.clean_asked},
+                             {"clean", opinion.count(false, Answer::kClean)},
+                             {"discrepancies", opinion.count(false, Answer::kDiscrepancy)},
+                             {"unanswered", opinion.count(false, Answer::kNone)},
+                             {"confidence", opinion.level},
+                             {"disagreement_below", opinion.disagreement_upper()}}},
+                           {"simulations", std::move(each)},
+                           {"words", opinion_sentences(opinion)}};
   return base::json_text(out);
 }
 

@@ -1,6 +1,7 @@
 #include "tools/app/coverage_plan.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>

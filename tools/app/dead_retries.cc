@@ -1,6 +1,7 @@
 #include "tools/app/dead_retries.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <map>
 #include <string>

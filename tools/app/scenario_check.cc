@@ -1,6 +1,7 @@
 #include "tools/app/scenario_check.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>

@@ -1,6 +1,7 @@
 #include "tools/app/trace_feed.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>

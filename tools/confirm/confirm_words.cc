@@ -1,6 +1,7 @@
 // Text that `confirm` and `threshold` print.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "tools/suite/suite_results.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

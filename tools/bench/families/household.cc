@@ -1,6 +1,7 @@
 #include "tools/bench/families/household.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstddef>
 #include <string_view>
