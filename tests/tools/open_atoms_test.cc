@@ -3,8 +3,14 @@
 
 #include <doctest/doctest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
+#include "compiler/base/temporary_folder.h"
+#include "compiler/pipeline/compile.h"
+#include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/graph/model_traces.h"
 #include "runtime/trace/trace_reader.h"
 #include "tests/support/csv_reader.h"
@@ -292,6 +298,108 @@ TEST_CASE("predicates and releases that are open for one reason or another") {
   }
   CHECK(seen.open >= 3);
   CHECK(seen.settled >= 1);
+}
+
+/// A goal `HoldsAt(F,time)`, joined with an atom of a predicate if there is one.
+struct Goal {
+  std::string fluent, predicate;
+  bool both = false;
+
+  std::string text() const {
+    const auto holds = "HoldsAt(" + fluent + ",time)";
+    return predicate.empty() ? holds : holds + (both ? " & " : " | ") + predicate;
+  }
+  bool met(const Trace& trace, std::size_t t) const {
+    const auto names = trace.holds(t);
+    const bool holds = std::find(names.begin(), names.end(), fluent) != names.end();
+    if (predicate.empty()) return holds;
+    const bool also = runtime::contains(trace.predicates, predicate);
+    return both ? holds && also : holds || also;
+  }
+};
+
+/// Is the valuation one behind the trace, and does it meet the goal where the trace ends?
+bool is_behind(const Trace& valuation, const Trace& trace, const Goal& goal, std::size_t first) {
+  const auto n = trace.points.size() - 1;
+  for (std::size_t t = 0; t <= n; ++t) {
+    if (valuation.holds(t) != trace.holds(t)) return false;
+    if (t < n && valuation.happens(t) != trace.happens(t)) return false;
+    if (t >= first && goal.met(valuation, t) != (t == n)) return false;
+  }
+  return true;
+}
+
+/// The number of traces that were compared, and of those with an open atom.
+std::pair<int, int> check_prefixes(const TextModel& bare, const std::string& text, const Goal& goal,
+                                   bool all_hits) {
+  base::SourceFiles files;
+  base::DiagnosticSink sink;
+  const base::TemporaryFolder folder("prefixes");
+  std::ofstream(folder.path() / "m.e") << text;
+  compiler::CompileInput input;
+  input.models = {folder.path() / "m.e"};
+  const auto formula = goal.text();
+  const base::SourceRange range{files.add("goal", formula), 0,
+                                static_cast<std::uint32_t>(formula.size())};
+  input.constraints = {{range, range}};
+  const auto compilation = compiler::compile_model(input, files, sink);
+  if (!compilation) return {0, 0};
+  const auto& model = compilation->model;
+  std::vector<Trace> valuations;
+  ModelTraces all(bare.compiled, query(Strategy::kBlocking, Distinct::kAll));
+  while (auto valuation = all.next()) {
+    if (valuations.size() == kMostValuations) return {0, 0};
+    valuations.push_back(*std::move(valuation));
+  }
+  const auto vocabulary = runtime::vocabulary_of(bare.compiled);
+  runtime::SolverSession session(model, runtime::make_cadical_solver());
+  runtime::PlanEnumerator enumerator(session, {.all_hits = all_hits});
+  runtime::OpenAtomFinder finder(
+      model, [] { return runtime::make_cadical_solver(); }, all_hits);
+  std::pair<int, int> seen;
+  while (const auto trace = enumerator.next()) {
+    const auto end = trace->points.size();
+    const std::size_t from_start = compiler::AtomIndex(model).hit(0) ? 0 : 1;
+    const auto first = all_hits ? end - 1 : from_start;
+    std::map<std::string, std::set<bool>> values;
+    for (const auto& valuation : valuations) {
+      if (!is_behind(valuation, *trace, goal, first)) continue;
+      auto cut = valuation;
+      cut.points.resize(end);
+      for (const auto& [atom, value] : hidden_of(cut, vocabulary)) values[atom].insert(*value);
+    }
+    std::vector<std::string> wanted;
+    for (const auto& [atom, both] : values) {
+      if (both.size() == 2) wanted.push_back(atom);
+    }
+    const auto open = finder.find(*trace);
+    REQUIRE(open.has_value());
+    CHECK(runtime::printed_atoms(*open, *trace->symbols) == wanted);
+    ++seen.first;
+    if (!wanted.empty()) ++seen.second;
+  }
+  return seen;
+}
+
+TEST_CASE("of a trace that ends where a goal is met, only what goes on from there counts") {
+  int compared = 0, open = 0;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    CAPTURE(seed);
+    const auto text = random_model(seed, kBruteForceSize).print();
+    const TextModel bare(text);
+    if (bare.ground == nullptr) continue;
+    const auto vocabulary = runtime::vocabulary_of(bare.compiled);
+    if (vocabulary.fluents.empty()) continue;
+    Goal goal{vocabulary.fluents.front().atoms.front(), {}, seed % 2 == 0};
+    if (!vocabulary.predicates.empty()) goal.predicate = vocabulary.predicates.back().atoms.back();
+    for (const bool all_hits : {false, true}) {
+      const auto seen = check_prefixes(bare, text, goal, all_hits);
+      compared += seen.first;
+      open += seen.second;
+    }
+  }
+  CHECK(compared > 200);
+  CHECK(open > 20);
 }
 
 TEST_CASE("a stop before the open atoms of a trace are known leaves the trace out") {
