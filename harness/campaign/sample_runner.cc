@@ -12,6 +12,7 @@
 #include "harness/region/state_mapping.h"
 #include "harness/simulator/protocol.h"
 #include "harness/world/arguments.h"
+#include "harness/world/step_length.h"
 
 namespace parallax::harness {
 namespace {
@@ -173,8 +174,9 @@ class ValueChecker {
       if (!fault.empty()) return report(name, fault);
     }
     if (const auto fault = wrong_call(controller, call.arguments, world_, layout_)) {
-      report(fault->name, fault->text);
+      return report(fault->name, fault->text);
     }
+    check_steps(binding, at, call, controller, sink);
   }
 
  private:
@@ -184,6 +186,23 @@ class ValueChecker {
     return !at.planned.source.empty() &&
            std::any_of(given.begin(), given.end(),
                        [&](const auto& one) { return taken_as(binding, one.first) == name; });
+  }
+
+  /// Speeds that the plan gives; those of the scenario were looked at when it was read.
+  void check_steps(const ActionBinding& binding, const Occurrence& at, const ActionCall& call,
+                   const ControllerSpec& controller, base::DiagnosticSink& sink) const {
+    const bool gives_speed = std::any_of(
+        controller.arguments.begin(), controller.arguments.end(), [&](const ArgumentSpec& one) {
+          return is_speed(one) && comes_from_plan(binding, at, std::string(one.name));
+        });
+    if (!gives_speed) return;  // traces are many
+    for (const LongStep& one : long_steps(controller, call.arguments, world_, layout_)) {
+      if (!comes_from_plan(binding, at, one.argument)) continue;
+      sink.warning(codes::kLongStep, binding.source,
+                   fmt::format("`{}` of `{}`, by the plan", one.argument, at.event.text),
+                   one.speed_m_s, 1e3 * one.step_m, 1e3 * world_.solver.timestep_s, one.thin_body,
+                   1e3 * one.thickness_m);
+    }
   }
 
   /// The plan's perform is at fault, not the scenario.

@@ -372,6 +372,7 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
     const auto parameters = observables(scenario.world);
     if (!check_variables(scenario, parameters, sink)) return sink.already_reported();
     check_action_names(scenario, {}, sink);
+    if (sink.error_count() == errors_before) check_step_lengths(scenario, sink);
     if (sink.error_count() == errors_before) check_free_regions(scenario, sink);
     if (sink.error_count() == errors_before) check_supported_starts(scenario, sink);
     if (sink.error_count() == errors_before) check_supported_regions(scenario, sink);

@@ -131,6 +131,9 @@ void check_expectation(const Scenario& scenario, base::DiagnosticSink& sink);
 void check_action_names(const Scenario& scenario, const std::vector<GroundFluent>& events,
                         base::DiagnosticSink& sink);
 
+/// Warns of speeds at which something moves farther in a step than a shape is thick.
+void check_step_lengths(const Scenario& scenario, base::DiagnosticSink& sink);
+
 /// The intervals of `range` mappings must lie within the stops of the joints that they are about.
 void check_ranges(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
                   base::DiagnosticSink& sink);

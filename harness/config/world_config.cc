@@ -8,6 +8,7 @@
 #include "harness/engine/world_check.h"
 #include "harness/world/chain_arm.h"
 #include "harness/world/density.h"
+#include "harness/world/step_length.h"
 #include "harness/world/world_layout.h"
 
 namespace parallax::harness {
@@ -210,6 +211,15 @@ void warn_of_densities(const YamlNode& node, const WorldSpec& world, base::Diagn
   }
 }
 
+void warn_of_falls(const YamlNode& node, const WorldSpec& world, base::DiagnosticSink& sink) {
+  for (const LongStep& one : long_falls(world, lay_out(world))) {
+    const auto path = "bodies/" + one.body;
+    sink.warning(codes::kLongStep, range_of(node, path + "/position_m"), path + " falls",
+                 one.speed_m_s, 1e3 * one.step_m, 1e3 * world.solver.timestep_s, one.thin_body,
+                 1e3 * one.thickness_m);
+  }
+}
+
 }  // namespace
 
 WorldSpec read_world(const YamlNode& node, EngineKind engine, base::DiagnosticSink& sink) {
@@ -252,7 +262,10 @@ WorldSpec read_world(const YamlNode& node, EngineKind engine, base::DiagnosticSi
         sink.error(codes::kBadWorld, range_of(node, problem.path), problem.path, problem.message);
     if (!problem.suggestion.empty()) error.fix(fmt::format("write `{}`", problem.suggestion));
   }
-  if (sink.error_count() == errors_before) warn_of_densities(node, world, sink);
+  if (sink.error_count() == errors_before) {
+    warn_of_densities(node, world, sink);
+    warn_of_falls(node, world, sink);
+  }
   return world;
 }
 

@@ -118,6 +118,20 @@ TEST_CASE("numbers of the plan beyond their bounds are known before the first si
   CHECK(result.err.find("plan2.lisp") != std::string::npos);
 }
 
+TEST_CASE("a speed of the plan at which a step is longer than a shape is thick is warned of") {
+  const KitchenCopy cli;
+  CHECK(cli.parallax({"check", "kitchen/plan2_modified.yaml"}).err.find("W5138") ==
+        std::string::npos);
+  cli.replace("kitchen/plan2_modified.lisp", "(speed 0.25)", "(speed 9)");
+  const auto result = cli.parallax({"check", "kitchen/plan2_modified.yaml"});
+  CAPTURE(result.err);
+  CHECK(result.code == 0);
+  CHECK(result.err.find("household.yaml:82:3") != std::string::npos);
+  CHECK(result.err.find("warning[W5138]: `max_speed_m_s` of `Go(bTable)`, by the plan: 9 m/s are "
+                        "36 mm in a step of 4 ms, but `bowl1` has a shape of 5 mm") !=
+        std::string::npos);
+}
+
 TEST_CASE("grippers that cannot hold what there is to hold") {
   check_overlay_refused("world: {bodies: {spoon1: {grasp: {width_m: 0.5}}}}",
                         "overlay.yaml:2:", "is 0.5 m, but no gripper opens wider than 0.09 m");
