@@ -205,8 +205,10 @@ Command adapter_check_command() {
       .file({"yaml"});
   command
       .option("--act", options->actions,
-              "An action to try, \"NAME ARGUMENT=VALUE ...\"; repeated: in this order. Default: "
-              "those that it says how to call")
+              "An action to try, \"NAME ARGUMENT=VALUE ...\"; may be repeated")
+      .details(
+          "Actions are tried in the order given. Default: those that the simulator says how to "
+          "call.")
       .list(ListForm::kOneEachTime);
   command
       .option("--tolerance", options->tolerance,
@@ -214,10 +216,9 @@ Command adapter_check_command() {
       .check(FiniteNumber{0.0, 1e3})
       .show_default();
   command
-      .option(
-          "--request-limit", options->request_limit_s,
-          "No request may take longer, in seconds of the wall's clock; default: as the scenario "
-          "or docs/simulator_protocol.md says")
+      .option("--request-limit", options->request_limit_s,
+              "Longest time of a request, in seconds of wall time")
+      .details("Default: as the scenario says, or docs/simulator_protocol.md.")
       .check(FiniteNumber{0.01, 1e5});
   return {std::move(command),
           [options](Invocation& invocation) { return run_adapter_check(*options, invocation); }};

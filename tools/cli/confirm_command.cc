@@ -139,8 +139,7 @@ void add_border_options(OptionTable& command, BorderOptions& options) {
   command.option("--sample", options.sample, "TRACE.SAMPLE; default: the first discrepancy");
   command
       .option("--tolerance", options.tolerance,
-              "Look for borders until they are known as well as this, in the parameter's unit; "
-              "default: a hundredth of its range")
+              "Precision of borders, in the parameter's unit; default: a hundredth of its range")
       .check(Positive{})
       .given(options.has_tolerance);
   command
@@ -171,8 +170,8 @@ Command confirm_command() {
   add_border_options(command, options->border);
   command
       .option("--repeats", options->confirm.repeats,
-              "Repeat the failing start so often with other seeds, and as often with half the "
-              "step; they do not count in --runs")
+              "Repetitions of the failing start with other seeds, and with half the step")
+      .details("They do not count in --runs.")
       .check(WholeNumber{0, 10'000})
       .show_default();
   return {std::move(command),

@@ -246,9 +246,10 @@ Command consequences_command() {
                "Behind every fact that is in all traces a minimal set of axioms that it follows "
                "from");
   command.heading("Explanations of an observation");
-  command.option("--abduce", options->abduction.events,
-                 "An event, or all that have this name: in which smallest sets of occurrences "
-                 "does what --observe says follow?");
+  command
+      .option("--abduce", options->abduction.events,
+              "Events whose smallest sets of occurrences explain what --observe says")
+      .details("An event, or a name for all events that have it.");
   command.option("--observe", options->observed,
                  "Formula over `time`, which is the horizon, and earlier timepoints");
   command.option("--limit", options->abduction.limit, "Of --abduce: so many explanations; 0: all")

@@ -61,8 +61,8 @@ Command coverage_command() {
       .show_default();
   command
       .option("--lcov", options->lcov,
-              "Write a tracefile for genhtml, editors and CI services; -: on the standard output, "
-              "instead of the text")
+              "Write an lcov tracefile for genhtml, editors and CI services")
+      .details("`-` prints it instead of the text.")
       .file();
   return {std::move(command),
           [options](Invocation& invocation) { return cover(*options, invocation); }};

@@ -348,10 +348,9 @@ void add_model_diff_options(OptionTable& command, DiffOptions& options) {
                "Compare declarations and axioms only; nothing is solved");
   command.flag("--traces-only", options.traces_only, "Compare traces only");
   command
-      .option(
-          "--count-limit", options.models.list_limit,
-          "Lost and gained traces that are counted one by one; a graph counts more of them if it "
-          "has at most 20 times as many transitions")
+      .option("--count-limit", options.models.list_limit,
+              "Most lost and gained traces that are counted one by one")
+      .details("A graph counts more of them if it has at most 20 times as many transitions.")
       .check(IntRange{1, 1'000'000})
       .show_default();
 }

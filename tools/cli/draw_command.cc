@@ -429,9 +429,9 @@ Command draw_command() {
       .required()
       .file({"yaml"});
   command
-      .option("-o,--out", options->out,
-              "File (of a scenario; default scene.svg) or folder (of a run; default "
-              "pictures in its folder)")
+      .option(
+          "-o,--out", options->out,
+          "File (default scene.svg), or folder for a run (default: pictures, in the run's folder)")
       .file();
   command.option("--sample", options->sample,
                  "TRACE.SAMPLE of a run; default: the first discrepancy");

@@ -301,8 +301,8 @@ Command explain_command() {
   add_recorded_scenario_option(command, options->scenario);
   command
       .option("--runs", options->further.runs,
-              "Of a run folder: make at most so many further simulations of the trace, until ten "
-              "have failed and ten (or none) have not, to tell the kind of cause; 0: none")
+              "Most further simulations of a run's trace, to find the kind of cause; 0: none")
+      .details("Simulates until ten runs have failed and ten (or none) have not.")
       .check(WholeNumber{0, 1'000'000})
       .show_default();
   command.option("-j,--jobs", options->further.jobs, "Of --runs: simulations at the same time")

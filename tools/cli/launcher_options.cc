@@ -22,19 +22,19 @@ void add_launcher_options(OptionTable& command, LauncherOptions& options) {
   const UnderHeading heading(command, "Workers on other machines");
   command
       .option("--launcher", options.launcher,
-              "Start workers through this command, which theirs is put behind: 'srun -n1 -c1', "
-              "'ssh lab3'; --jobs says how many (docs/cluster.md)")
+              "Prefix for worker commands: 'srun -n1 -c1', 'ssh lab3' (docs/cluster.md)")
+      .details("--jobs says how many workers are started.")
       .named_value("COMMAND");
   command
       .option("--hosts", options.hosts,
-              "Likewise through the commands in this file, each with the number of its workers; "
-              "--jobs, if given, says how many of all there are at a time")
+              "File with one prefix command a line and its number of workers")
+      .details("--jobs, if given, says how many of all of them are used at a time.")
       .named_value("FILE")
       .file();
   command
       .option("--first-slot", options.first_slot,
-              "Of --hosts: begin with this one of all workers' places, counted from 0; for several "
-              "campaigns at the same time")
+              "Begin with this place of --hosts, counted from 0")
+      .details("For several campaigns at the same time.")
       .check(WholeNumber{0, harness::kMostSlots - 1})
       .needs("--hosts");
   command

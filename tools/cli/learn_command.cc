@@ -99,8 +99,7 @@ Command learn_command() {
       .file({"e"});
   command
       .option("--out", options->folder,
-              "Folder of the model, its scenario, a log and all runs; default "
-              "out/learn-NAME, numbered if taken")
+              "Folder of the model, scenario, log and runs; default out/learn-NAME, numbered")
       .folder();
   command
       .option("--explore", learn.explore,

@@ -75,6 +75,7 @@ std::string option_text(const Option& option) {
     out += (out.empty() || out.ends_with('.') ? "" : ".") + std::string(out.empty() ? "" : " ");
     out += sentence;
   };
+  add(option.more);
   if (!option.is_flag) add(std::visit(RangeText{}, option.value_check));
   if (option.shows_default) {
     const auto value = std::visit(DefaultText{}, option.target);

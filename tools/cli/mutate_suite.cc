@@ -44,9 +44,10 @@ int mutate_suite(const std::vector<SuiteCase>& cases, const MutateOptions& optio
 
 void add_mutate_options(OptionTable& command, MutateOptions& options) {
   const UnderHeading heading(command, "Mutation");
-  command.flag("--mutate", options.mutate,
-               "Which single mistakes in its models and plans would the suite not notice? "
-               "(docs/mutation.md)");
+  command
+      .flag("--mutate", options.mutate,
+            "Mutation testing: which mistakes in its models and plans the suite does not notice")
+      .details("docs/mutation.md explains it.");
   command
       .option("--at-most", options.at_most,
               "With --mutate: so many mutants, evenly spread over all of them")

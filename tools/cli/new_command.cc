@@ -80,17 +80,13 @@ Command new_command() {
       .required()
       .folder();
   command
-      .option(
-          "--world", options->world,
-          "line (two regions and a box), room (a table and a shelf) or kitchen (a counter and a "
-          "drawer)")
+      .option("--world", options->world,
+              "line (two regions, a box), room (table, shelf) or kitchen (counter, drawer)")
       .check(OneOf{{"line", "room", "kitchen"}})
       .show_default();
   command
-      .option(
-          "--robot", options->robot,
-          "line (on rails, beside the line) or mobile (drives, sees, one arm); default: the one "
-          "of the world")
+      .option("--robot", options->robot,
+              "line (on rails) or mobile (drives, sees, one arm); default: the one of the world")
       .check(OneOf{{"line", "mobile"}});
   return {std::move(command),
           [options](Invocation& invocation) { return make_new(*options, invocation); }};

@@ -54,7 +54,7 @@ enum class ValueSource { kWords, kFiles, kFolders, kPrograms };
 struct Option {
   std::string names;  // "-j,--jobs"; without dashes: positional
   OptionTarget target;
-  std::string help;
+  std::string help;  // one line of --help, at most 90 characters
   bool is_flag = false;
   bool is_required = false;
   bool shows_default = false;
@@ -67,7 +67,9 @@ struct Option {
   ValueSource source = ValueSource::kWords;
   std::vector<std::string> endings = {};  // of the files; empty: any
   std::vector<std::string> offered = {};  // words that a shell offers, beside others
+  std::string more = {};                  // sentences for the manual page, below the help
 
+  Option& details(std::string sentences) { return more = std::move(sentences), *this; }
   Option& required() { return is_required = true, *this; }
   /// The help shows what the target holds now.
   Option& show_default() { return shows_default = true, *this; }

@@ -325,9 +325,10 @@ Command prove_command() {
       .check(WholeNumber{0, 1'000'000});
   command
       .option("--assume", options->assume,
-              "NAME=VALUE, what is taken for granted before an action: drift, drift-rad, sliding, "
-              "sliding-rad, goal, goal-rad, parked, held, held-rad, held-height, lean [m, rad], or "
-              "JOINT.q=LOW:HIGH")
+              "NAME=VALUE: a bound that the proof assumes before an action (docs/prove.md)")
+      .details(
+          "Names: drift, drift-rad, sliding, sliding-rad, goal, goal-rad, parked, held, held-rad, "
+          "held-height, lean [m, rad], or JOINT.q=LOW:HIGH.")
       .list(ListForm::kOneEachTime);
   command.heading("How far");
   command.option("--boxes", options->limits.boxes, "Boxes examined for each test, at most")

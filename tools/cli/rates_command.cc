@@ -205,14 +205,19 @@ Command rates_command() {
               "Simulations of each trace (300); with --until-..., the most (100,000)")
       .check(WholeNumber{1, 1'000'000});
   command
-      .option("--until-width", options->rates.until_width,
-              "Go on until the interval of any discrepancy is no wider than this (0.1: ten "
-              "points); intervals then hold whenever one looks, and are wider for as many runs")
+      .option(
+          "--until-width", options->rates.until_width,
+          "Go on until the interval of every discrepancy is at most this wide (0.1: ten points)")
+      .details(
+          "Such intervals hold at every moment, and are wider than others for the same number of "
+          "runs.")
       .check(FiniteNumber{0.001, 1.0});
   command
       .option("--until-below", options->below,
-              "Go on until it is known, with the confidence, whether the rate of any discrepancy "
-              "is below this; with --until-above, whether it lies between")
+              "Go on until the rate of every discrepancy is known to be below or above this")
+      .details(
+          "With --until-above: or to lie between the two. Known with the confidence of "
+          "--confidence.")
       .check(kShare);
   command
       .option("--until-above", options->above,
@@ -220,9 +225,11 @@ Command rates_command() {
       .check(kShare);
   command
       .option("--method", options->method,
-              "counting: uniform runs; or, for what is too rare to be counted, importance (its "
-              "interval holds whatever the simulator does) or splitting: --runs (10,000) is then "
-              "the most, and no cause is told")
+              "How runs are drawn: counting, or for rare discrepancies importance or splitting")
+      .details(
+          "counting draws starts uniformly. importance and splitting make at most --runs (10,000) "
+          "simulations and tell no cause; the interval of importance holds whatever the simulator "
+          "does.")
       .check(OneOf{{"counting", "importance", "splitting"}})
       .show_default();
   command.heading("What is counted");

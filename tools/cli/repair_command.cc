@@ -188,15 +188,18 @@ Command repair_command() {
                  "Also say which of these properties of the plan each proposal breaks or restores");
   command
       .option("--apply", options->apply,
-              "Write this proposal into the files of the model or the plan, if they lie below the "
-              "current folder or in its repository; else name --scenario, or --allow-outside")
+              "Write this proposal into the files of the model or the plan")
+      .details(
+          "Files must lie below the current folder or in its repository; else name --scenario, or "
+          "give --allow-outside.")
       .check(Positive{});
   command.heading("Simulations that tell them apart");
   command
       .option("--runs", options->runs,
-              fmt::format("Make at most so many simulations to tell proposals apart, counted with "
-                          "those made earlier; 0: none; default: {}, where the world is a model {}",
-                          kRunsInPhysics, kRunsInModel))
+              "Most simulations that are made to tell proposals apart; 0: none")
+      .details(fmt::format(
+          "Counted with those made earlier. Default: {}, where the world is a model {}.",
+          kRunsInPhysics, kRunsInModel))
       .check(WholeNumber{0, 1'000'000});
   command.option("-j,--jobs", options->experiments.jobs, "Of --runs: simulations at the same time")
       .check(WholeNumber{1, 256})
@@ -204,9 +207,9 @@ Command repair_command() {
       .given(options->launcher.jobs_given);
   add_launcher_options(command, options->launcher);
   command.heading("Repair after repair");
-  command.flag("--loop", options->loop,
-               "Apply the first proposal to a copy, run again, and so on, while the first is the "
-               "only one of its rank");
+  command.flag(
+      "--loop", options->loop,
+      "Apply the first proposal to a copy and run again, while it is the only one of its rank");
   command.option("--out", options->out, "Of --loop: a new folder for copies, runs and the log")
       .needs("--loop")
       .folder();

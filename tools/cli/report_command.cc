@@ -232,10 +232,10 @@ Command report_command() {
               "The page; default report.html in the run folder, comparison.html of several")
       .file({"html"});
   command.heading("What is on the page");
-  command.flag(
-      "--explain", options->explain,
-      "Say which axioms contradict the first discrepancy, as `parallax explain` does; always "
-      "where that has been at the folder");
+  command
+      .flag("--explain", options->explain,
+            "Say which axioms contradict the first discrepancy, as `parallax explain` does")
+      .details("Always done if an explanation lies in the folder.");
   command.flag("--repair", options->repair,
                "Propose changes of the model, as `parallax repair` does");
   command
@@ -249,8 +249,8 @@ Command report_command() {
   command
       .option(
           "--property", options->properties,
-          "Say whether this formula holds at all times of the scenario's model, and which known "
-          "discrepancies that rests on; may be repeated")
+          "Say whether this formula holds in the scenario's model at all times; may be repeated")
+      .details("Also says on which known discrepancies the answer rests.")
       .list(ListForm::kOneEachTime)
       .needs("--ledger");
   command.flag(

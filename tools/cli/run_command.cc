@@ -337,34 +337,38 @@ Command run_command() {
       .given(options->launcher.jobs_given);
   add_launcher_options(command, options->launcher);
   command.flag("--resume", options->resume, "Continue the run in the run folder");
-  command.flag("--keep-going", options->keep_going,
-               "Go on after a discrepancy: with the next trace; in closed loop with the next "
-               "execution, and count how often each cause comes up");
-  command.flag("--until-covered", options->until_covered,
-               "Go on until every trace was simulated; in closed loop, until executions showed "
-               "every behaviour of plan and model, or those that they did not show are rarer than "
-               "epsilon. Includes --keep-going");
+  command
+      .flag("--keep-going", options->keep_going,
+            "Go on after a discrepancy, with the next trace or execution")
+      .details("In closed loop it also counts how often each cause occurs.");
+  command
+      .flag("--until-covered", options->until_covered,
+            "Go on until every trace was simulated, or every behaviour seen. Includes --keep-going")
+      .details(
+          "In closed loop: until executions showed every behaviour of plan and model, or those "
+          "that they did not show are rarer than epsilon.");
   command.heading("What is claimed");
   command.option("--criterion", options->criterion, "When a trace has been tried enough")
       .check(OneOf{{"clean-runs", "anytime", "clopper-pearson", "paper", "paper-literal",
                     "paper-repaired"}});
   command
-      .option(
-          "--family", options->family,
-          "What is claimed with confidence C: all-traces (one sentence about all of them, which "
-          "share the error; the default) or per-trace (each by itself, in fewer runs)")
+      .option("--family", options->family,
+              "Claim for all-traces together (the default) or per-trace")
+      .details(
+          "all-traces: one sentence about all traces, which share the error probability. "
+          "per-trace: a claim for each trace by itself, in fewer runs.")
       .check(OneOf{{"all-traces", "per-trace"}});
   add_judging_options(command, options->judging);
   command.heading("What is simulated");
   command
       .option("--execution", options->execution,
-              "What is simulated: open-loop (the events of traces) or closed-loop (the plan "
-              "itself, which goes on by what the simulator reports)")
+              "Simulate open-loop (events of traces) or closed-loop (the plan itself)")
+      .details("In closed loop the plan goes on by what the simulator reports.")
       .check(OneOf{{"open-loop", "closed-loop"}});
   command
       .option("--starts", options->starts,
-              "Closed loop: where executions begin: uniform (in any initial state), or guided (at "
-              "first where the model has a way to what no execution went through yet)")
+              "Closed loop: initial states are uniform, or guided to behaviour not yet seen")
+      .details("guided: first where the model has a path that no execution has taken yet.")
       .check(OneOf{{"uniform", "guided"}});
   command.heading("What is claimed");
   command.option("--confidence", options->confidence, "Confidence level C of the claim")
@@ -375,15 +379,17 @@ Command run_command() {
       .check(WholeNumber{1, 1'000'000});
   command.heading("Search");
   command
-      .option(
-          "--search", options->search,
-          "Before the runs that are claimed from, so many simulations of each trace from starts "
-          "that are likely to go wrong, by how near earlier ones came to it")
+      .option("--search", options->search,
+              "Spend N simulations per trace on guided search before the certification runs")
+      .details(
+          "Falsification: starts are proposed by how near earlier ones came to a discrepancy. "
+          "Nothing is claimed from these runs.")
       .check(WholeNumber{0, harness::kMaxSearchRuns});
   command
       .option("--search-strategy", options->strategy,
-              "How the search proposes starts: portfolio (the default), uniform, sobol, boundary, "
-              "cross-entropy, expected-improvement or descent")
+              "How the search proposes starts; portfolio is the default")
+      .details(
+          "portfolio, uniform, sobol, boundary, cross-entropy, expected-improvement or descent.")
       .check(OneOf{{"portfolio", "uniform", "sobol", "boundary", "cross-entropy",
                     "expected-improvement", "descent"}});
   command.heading("Traces");
@@ -391,10 +397,9 @@ Command run_command() {
       .check(WholeNumber{1, 1'000'000'000});
   command.heading("What is kept");
   command
-      .option(
-          "--record", options->record,
-          "Of which simulations motion is kept in the run folder: all, discrepancies (and three "
-          "clean ones of each trace) or none")
+      .option("--record", options->record,
+              "Record the motion of all simulations, of discrepancies, or of none")
+      .details("discrepancies also keeps three clean simulations of each trace.")
       .check(OneOf{{"all", "discrepancies", "none"}})
       .show_default();
   SampleOutput::add_option(command, options->samples);

@@ -15,8 +15,7 @@ bool is_csv(const std::string& path) { return path.ends_with(".csv"); }
 void SampleOutput::add_option(OptionTable& command, std::string& path) {
   command
       .option("--samples", path,
-              "Also write one row for each simulation to this file (.csv or .jsonl): start, "
-              "outcome, cause, margins")
+              "Write one row per simulation (.csv or .jsonl): start, outcome, cause, margins")
       .file({"csv", "jsonl"});
 }
 

@@ -44,8 +44,8 @@ Option& add_model_options(OptionTable& command, ModelOptions& options) {
       .check(IntRange{0, 1'000'000});
   command
       .option("--until", options.until,
-              "Formula over `time`, or a temporal one (docs/temporal.md): traces end where it "
-              "holds for the first time, from timepoint 0 on")
+              "Formula over `time`, or a temporal one: traces end where it holds first")
+      .details("Counted from timepoint 0 on; docs/temporal.md has the temporal operators.")
       .list(ListForm::kOneEachTime);
   return models;
 }
@@ -78,15 +78,17 @@ void add_plan_options(OptionTable& command, ModelOptions& options) {
       .show_default();
   command
       .option("--par", options.par,
-              "The branches of `par` and `pursue`: interleave for every order of their performs; "
-              "in-order leaves out the others, what branches still do after one has failed, and of "
-              "a `pursue` all but the first branch")
+              "How branches of `par` and `pursue` are ordered: interleave or in-order")
+      .details(
+          "interleave: every order of their performs. in-order: one branch after another; leaves "
+          "out the other orders, the rest of branches after one has failed, and of a `pursue` all "
+          "but the first branch.")
       .check(OneOf{{"in-order", "interleave"}})
       .show_default();
   command
       .option("--max-horizon", options.max_horizon,
-              "Without --horizon and a range of `time`: the longest path of the plan, but no "
-              "more than this")
+              "Without a horizon: the longest path of the plan, but at most this")
+      .details("Applies without --horizon and without a range of `time` in the model.")
       .check(WholeNumber{1, 10'000})
       .show_default();
 }
@@ -122,8 +124,8 @@ void apply(const JudgingOptions& options, harness::Scenario& scenario) {
 void add_cubes_option(OptionTable& command, std::int64_t& jobs) {
   command
       .option("-j,--jobs", jobs,
-              "Cut a question that is hard for the solver into cubes, for so many threads (two are "
-              "of use); the answer is the same for any number, and no proof is made of it")
+              "Threads of the solver for hard questions, which are cut into cubes")
+      .details("The answer is the same for any number; two are of use. No proof is made of it.")
       .check(WholeNumber{1, 256});
 }
 
@@ -142,20 +144,22 @@ void add_search_options(OptionTable& command, SearchOptions& options) {
       .show_default();
   command
       .option("--strategy", options.strategy,
-              "auto, search, graph, components, tree, guarded or blocking: the traces and their "
-              "order are "
-              "the same, the time is not")
+              "auto, search, graph, components, tree, guarded or blocking")
+      .details("The traces and their order are the same, only the time differs.")
       .check(OneOf{strategy_names()})
       .show_default();
-  command
-      .option("--order", options.order,
-              "canonical, or any: whichever trace the solver finds first. By default any where "
-              "--limit 1 asks for one trace that reaches a goal, which is many times as fast")
+  command.option("--order", options.order, "canonical, or any: as the solver finds them")
+      .details(
+          "By default any where --limit 1 asks for one trace that reaches a goal, which is many "
+          "times as fast.")
       .check(OneOf{{"canonical", "any"}});
   add_cubes_option(command, options.jobs);
-  command.flag("--up-to-symmetry", options.up_to_symmetry,
-               "List one trace of each orbit: of those that exchanging constants which model, plan "
-               "and goal do not tell apart makes of each other, and how many these are");
+  command
+      .flag("--up-to-symmetry", options.up_to_symmetry,
+            "List one trace of each orbit, and how many traces it stands for")
+      .details(
+          "An orbit is what exchanging constants that model, plan and goal do not tell apart makes "
+          "of a trace.");
   add_hits_option(command, options.hits);
   command.flag("--split-initial", options.split_initial,
                "List every initial state, not only every sequence of events");
@@ -165,8 +169,8 @@ void add_listing_options(OptionTable& command, ListingOptions& options) {
   const UnderHeading heading(command, "How they are listed");
   command
       .option("--format", options.format,
-              "text (changes only), jsonl, itf (Informal Trace Format), csv, or decreasoner (as "
-              "the 2005 reasoner prints models)")
+              "text, jsonl, itf (Informal Trace Format), csv, or decreasoner")
+      .details("text prints changes only; decreasoner prints as the 2005 reasoner does.")
       .check(OneOf{{"text", "jsonl", "itf", "csv", "decreasoner"}})
       .show_default();
   command
@@ -178,8 +182,8 @@ void add_listing_options(OptionTable& command, ListingOptions& options) {
 void add_certify_option(OptionTable& command, CertifyOption& option) {
   command
       .flag("--certify", option.file,
-            "Write a DRAT proof that there are no other traces, and the formula it refutes "
-            "(FILE.cnf), and check it; the usual FILE is the model's name with .drat")
+            "Write and check a DRAT proof that there are no other traces; default: MODEL.drat")
+      .details("The formula that the proof refutes is written beside it (FILE.cnf).")
       .named_value("[=FILE]")
       .file({"drat"});
 }
@@ -187,9 +191,9 @@ void add_certify_option(OptionTable& command, CertifyOption& option) {
 void add_replay_options(OptionTable& command, ReplayTracesOptions& options) {
   const UnderHeading heading(command, "Traces that are given");
   command
-      .option("--replay", options.file,
-              "Hold the traces of this file (jsonl or itf) against the model; exit 1 if one "
-              "is no trace of it")
+      .option(
+          "--replay", options.file,
+          "Check the traces of this file (jsonl or itf); exit 1 if one is no trace of the model")
       .file();
   command.flag("--other-model", options.other_model,
                "Replay traces of another model that has the same names");

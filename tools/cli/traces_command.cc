@@ -446,8 +446,10 @@ Command traces_command() {
   command.heading("Best traces");
   command
       .option("--minimize", options->model.minimize,
-              "`count FORMULA` or `sum TERM: FORMULA` over their free variables: only traces for "
-              "which this is least; again: of these, those for which that is least")
+              "Only traces with the least `count FORMULA` or `sum TERM: FORMULA`; may be repeated")
+      .details(
+          "Counts over the free variables. Repeated: of the least traces, those for which the next "
+          "objective is least.")
       .list(ListForm::kOneEachTime);
   command.flag("--best", options->model.best,
                "The same with what the model's `minimize` statements say, in their order");
@@ -456,9 +458,8 @@ Command traces_command() {
   command.flag("--count", options->count, "Print only the number of traces");
   command
       .option("--distinct", options->search.distinct,
-              "What tells traces apart: `observable` (HoldsAt and Happens) or `all` atoms, which "
-              "is the "
-              "default of --format decreasoner")
+              "Traces differ in `observable` atoms (HoldsAt, Happens) or in `all`")
+      .details("all is the default of --format decreasoner.")
       .check(OneOf{{"observable", "all"}})
       .show_default();
   command.flag("--stats", options->model.stats,

@@ -101,9 +101,10 @@ Command worker_command() {
   command.option("--engine", options->engine, "Simulate with this engine")
       .check(OneOf{{"ode", "mujoco"}});
   command.flag("--half-step", options->half_step, "Simulate with half the scenario's step");
-  command.flag("--elsewhere", options->elsewhere,
-               "For another machine: whatever simulator the scenario names, in a process of its "
-               "own; says first who it is, and gives signs of life");
+  command
+      .flag("--elsewhere", options->elsewhere,
+            "Serve another machine: identify the program, and give signs of life")
+      .details("Also runs whatever simulator the scenario names, in a process of its own.");
   command.option("--folder", options->folder, "Of --elsewhere: paths start here").folder();
   command.option("--world-hash", options->world_hash, "Of --elsewhere: of a world that is a model");
   command.option("--world-horizon", options->world_horizon, "Of --elsewhere: likewise, of the run")

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "tests/tools/manual/help_text.h"
 
@@ -51,6 +52,22 @@ TEST_CASE("options of a command with many stand below headings of their own") {
   CHECK(below("Commands that a scenario names", "--no-commands"));
   CHECK(below("General", "--time-limit"));
   CHECK_FALSE(below("General", "--confidence"));
+}
+
+TEST_CASE("an option's help is one line; the rest stands in the manual page") {
+  constexpr std::size_t kColumn = 30, kMost = 90;  // where CLI11 begins the text
+  const CliFixture cli;
+  std::size_t seen = 0;
+  for (const auto& name : listed_commands(cli)) {
+    std::istringstream help(cli.parallax({name, "--help"}).out);
+    for (std::string line; std::getline(help, line);) {
+      if (line.size() <= kColumn || line.compare(kColumn - 2, 2, "  ") != 0) continue;
+      if (line.compare(0, 2, "  ") != 0 || line[kColumn] == ' ') continue;
+      ++seen;
+      CHECK_MESSAGE(line.size() - kColumn <= kMost, name << ": " << line);
+    }
+  }
+  CHECK(seen > 400);
 }
 
 TEST_CASE("`help` tells of commands and topics, and names the nearest where there is none") {
