@@ -21,7 +21,7 @@ void move_behind(AspBody& body, AspBody more) {
               std::make_move_iterator(more.end()));
 }
 
-const char* symbol_of(CompareOp op, bool value) {
+const char* comparison_sign(CompareOp op, bool value) {
   switch (op) {
     case CompareOp::kEqual:
       return value ? " = " : " != ";
@@ -312,7 +312,7 @@ FormulaWriter::Part FormulaWriter::compare(const TypedFormula& formula) {
   for (const bool value : {false, true}) {
     AspBody body = left.lookups;
     append(body, right.lookups);
-    body.push_back(plain_literal(left.text + symbol_of(formula.compare, value) + right.text));
+    body.push_back(plain_literal(left.text + comparison_sign(formula.compare, value) + right.text));
     part.when(value) = {std::move(body)};
   }
   return part;

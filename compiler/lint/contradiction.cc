@@ -13,7 +13,7 @@ namespace parallax::compiler {
 namespace {
 
 /// One conjunct without its negation signs.
-struct Literal {
+struct AtomLiteral {
   TypedFormulaId formula;
   bool negated = false;
 };
@@ -82,11 +82,11 @@ class Search {
     std::int64_t upper = std::numeric_limits<std::int64_t>::max();
   };
 
-  std::vector<Literal> conjuncts(TypedFormulaId root) const {
-    std::vector<Literal> found;
-    std::vector<Literal> stack = {{root, false}};
+  std::vector<AtomLiteral> conjuncts(TypedFormulaId root) const {
+    std::vector<AtomLiteral> found;
+    std::vector<AtomLiteral> stack = {{root, false}};
     while (!stack.empty()) {
-      const Literal next = stack.back();
+      const AtomLiteral next = stack.back();
       stack.pop_back();
       const auto& formula = model_.formulas[next.formula];
       const auto kind = formula.kind;
@@ -223,7 +223,7 @@ class Search {
     return "no number is left for " + quoted(term);
   }
 
-  std::optional<std::string> atom(const Literal& literal, const TypedFormula& formula) {
+  std::optional<std::string> atom(const AtomLiteral& literal, const TypedFormula& formula) {
     std::string name = std::to_string(formula.predicate.index());
     for (const auto term : formula.terms) name += ',' + key(term);
     const auto [known, is_new] = atoms_.emplace(std::move(name), literal.negated);

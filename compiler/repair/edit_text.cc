@@ -10,8 +10,6 @@
 namespace parallax::compiler {
 namespace {
 
-constexpr std::size_t kLineWidth = 100;
-
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 struct Extent {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,9 @@
 #include "compiler/repair/edit_grammar.h"
 
 namespace parallax::compiler {
+
+/// Columns of a line of a model that is written anew; longer ones are broken.
+inline constexpr std::size_t kLineWidth = 100;
 
 /// Chosen edits of one model, as changes of its texts and as words. Everything referred to outlives
 /// it.

@@ -14,8 +14,6 @@
 namespace parallax::compiler {
 namespace {
 
-constexpr std::size_t kLineWidth = 100;
-
 /// Names of the model that stand for constants, and the other way round.
 using Names = std::map<std::string, std::string>;
 

@@ -10,7 +10,7 @@
 namespace parallax::harness {
 namespace {
 
-std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
+std::string in_quotes(std::string_view name) { return "`" + std::string(name) + "`"; }
 
 const PlaceSpec* find_place(const WorldSpec& world, std::string_view name) {
   const auto found = std::find_if(world.places.begin(), world.places.end(),
@@ -71,7 +71,7 @@ const ArgumentSpec* find_argument(const ControllerSpec& spec, std::string_view n
 
 std::string wrong_name(const ArgumentSpec& argument, std::string_view name, const WorldSpec& world,
                        const WorldLayout& layout) {
-  const auto fault = [&](const char* what) { return "is " + quoted(name) + ", which " + what; };
+  const auto fault = [&](const char* what) { return "is " + in_quotes(name) + ", which " + what; };
   if (argument.unit == "body" || argument.unit == "graspable") {
     const auto body = layout.find_body(name);
     if (!body || !layout.is_free[body->index()]) return fault("does not name a free body");
@@ -144,7 +144,7 @@ std::optional<ArgumentFault> wrong_grip_force(const ControllerSpec& spec, const 
   const double most = layout.sliders[*finger].max_force_n;
   if (!(force > most)) return std::nullopt;
   return ArgumentFault{kForce, fmt::format("is {:g} N, more than the {:g} N (max_force_n) of {}",
-                                           force, most, quoted(world.robot.finger_joint))};
+                                           force, most, in_quotes(world.robot.finger_joint))};
 }
 
 }  // namespace
@@ -172,22 +172,23 @@ std::optional<ArgumentFault> wrong_effort(const ControllerSpec& spec, const Stat
     if (!(force > most)) return std::nullopt;
     return ArgumentFault{
         "effort_n", fmt::format("is {:g} N, more than the {:g} N (max_force_n) of {}", force, most,
-                                quoted(arm->finger_joint))};
+                                in_quotes(arm->finger_joint))};
   }
   if (effort->fallback > most) {
-    return ArgumentFault{
-        "arm", fmt::format("is {}: the {:g} N of `effort_n` are more than the "
-                           "{:g} N (max_force_n) of {}",
-                           quoted(arm->name), effort->fallback, most, quoted(arm->finger_joint))};
+    return ArgumentFault{"arm", fmt::format("is {}: the {:g} N of `effort_n` are more than the "
+                                            "{:g} N (max_force_n) of {}",
+                                            in_quotes(arm->name), effort->fallback, most,
+                                            in_quotes(arm->finger_joint))};
   }
   const auto body = layout.find_body(name_of("object"));
   if (!body || !layout.bodies[*body].grasp) return std::nullopt;
   const double force = layout.bodies[*body].grasp->effort_n;
   if (!(force > most)) return std::nullopt;
   return ArgumentFault{
-      "object", fmt::format("is {}, whose grasp asks for {:g} N (effort_n), more than the {:g} N "
-                            "(max_force_n) of {}",
-                            quoted(name_of("object")), force, most, quoted(arm->finger_joint))};
+      "object",
+      fmt::format("is {}, whose grasp asks for {:g} N (effort_n), more than the {:g} N "
+                  "(max_force_n) of {}",
+                  in_quotes(name_of("object")), force, most, in_quotes(arm->finger_joint))};
 }
 
 std::optional<ArgumentFault> wrong_tolerance(const ControllerSpec& spec, const State& given,
@@ -217,13 +218,13 @@ std::optional<ArgumentFault> wrong_tolerance(const ControllerSpec& spec, const S
     return ArgumentFault{
         key, fmt::format("is {:g} {}, half of the {:g} {} between the stops of {} or more: it "
                          "would tell neither stop from the middle",
-                         value, unit, way, unit, quoted(*name))};
+                         value, unit, way, unit, in_quotes(*name))};
   }
   if (tolerance->fallback < 0.5 * way) return std::nullopt;
   return ArgumentFault{
       "joint", fmt::format("is {}, whose stops are {:g} {} apart: the {:g} {} of `{}` are half of "
                            "that or more; give less",
-                           quoted(*name), way, unit, tolerance->fallback, unit, key)};
+                           in_quotes(*name), way, unit, tolerance->fallback, unit, key)};
 }
 
 std::optional<ArgumentFault> wrong_call(const ControllerSpec& spec, const State& given,
@@ -259,29 +260,29 @@ std::variant<Arguments, std::string> Arguments::check(const ControllerSpec& spec
   Arguments arguments(spec, world, layout);
   for (const auto& [name, value] : given) {
     const ArgumentSpec* known = find_argument(spec, name);
-    if (known == nullptr) return quoted(spec.name) + " takes no argument " + quoted(name);
+    if (known == nullptr) return in_quotes(spec.name) + " takes no argument " + in_quotes(name);
     if (is_name(*known)) {
       const auto* text = std::get_if<std::string>(&value);
-      if (text == nullptr) return "argument " + quoted(name) + " is not a name";
+      if (text == nullptr) return "argument " + in_quotes(name) + " is not a name";
       const std::string fault = wrong_name(*known, *text, world, layout);
-      if (!fault.empty()) return "argument " + quoted(name) + " " + fault;
+      if (!fault.empty()) return "argument " + in_quotes(name) + " " + fault;
       arguments.names_.emplace(name, *text);
       continue;
     }
     const std::optional<double> number = as_number(value);
     if (!number || !std::isfinite(*number)) {
-      return "argument " + quoted(name) + " is not a finite number";
+      return "argument " + in_quotes(name) + " is not a finite number";
     }
     const std::string fault = wrong_number(*known, *number);
-    if (!fault.empty()) return "argument " + quoted(name) + " " + fault;
+    if (!fault.empty()) return "argument " + in_quotes(name) + " " + fault;
     arguments.numbers_.emplace(name, *number);
   }
   if (const auto fault = wrong_call(spec, given, world, layout)) {
-    return "argument " + quoted(fault->name) + " " + fault->text;
+    return "argument " + in_quotes(fault->name) + " " + fault->text;
   }
   for (const ArgumentSpec& one : spec.arguments) {
     if (!one.required || given.find(one.name) != given.end()) continue;
-    return quoted(spec.name) + " needs the argument " + quoted(one.name);
+    return in_quotes(spec.name) + " needs the argument " + in_quotes(one.name);
   }
   return arguments;
 }
