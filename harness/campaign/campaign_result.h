@@ -148,6 +148,13 @@ struct RepetitionResult {
   }
 };
 
+/// How many simulations were lost for reasons of one kind.
+struct LossCount {
+  std::string kind;  // loss_kind
+  std::int64_t count = 0;
+  std::int64_t example = 0;  // number of the first such sample
+};
+
 struct TraceResult {
   std::shared_ptr<const CampaignTrace> trace;
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
@@ -159,6 +166,7 @@ struct TraceResult {
   std::int64_t clean = 0;
   std::int64_t admitted = 0;  // of the clean ones: went otherwise, as the model admits
   std::int64_t lost = 0;
+  std::vector<LossCount> losses;    // the lost ones by kind, in the order in which they came
   std::int64_t of_the_solver = 0;   // of the lost ones: taken back by the simulator (kOfTheSolver)
   std::string first_of_the_solver;  // why the first of them was
   std::int64_t retried = 0;         // lost at first and observed at the second attempt

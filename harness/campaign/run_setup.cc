@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -107,6 +108,20 @@ std::string unseen_text(std::int64_t unseen) {
 
 void count_loss(const SampleRecord& record, TraceResult& result) {
   ++result.lost;
+  const auto kind = loss_kind(record.reason);
+  auto known = std::find_if(result.losses.begin(), result.losses.end(),
+                            [&](const LossCount& one) { return one.kind == kind; });
+  if (known == result.losses.end()) {
+    // Texts of a foreign simulator may all differ.
+    constexpr std::size_t kMostKinds = 8;
+    if (result.losses.size() >= kMostKinds) {
+      known = std::prev(result.losses.end());
+      known->kind = "other reasons";
+    } else {
+      known = result.losses.insert(result.losses.end(), LossCount{kind, 0, record.sample});
+    }
+  }
+  ++known->count;
   if (!is_of_the_solver(record)) return;
   if (result.of_the_solver++ == 0) {
     result.first_of_the_solver =

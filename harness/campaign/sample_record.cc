@@ -76,6 +76,15 @@ bool is_of_the_solver(const SampleRecord& record) {
   return record.reason.starts_with(kOfTheSolver);
 }
 
+std::string loss_kind(std::string_view reason) {
+  constexpr std::size_t kLongest = 80;
+  auto end = std::min({reason.find(": "), reason.find(" ("), reason.size()});
+  if (end == 0) return "no reason given";
+  if (end <= kLongest) return std::string(reason.substr(0, end));
+  for (end = kLongest; end > 0 && base::continues_code_point(reason[end]);) --end;
+  return std::string(reason.substr(0, end)) + "...";
+}
+
 std::string digest_of(const SampleRecord& record) {
   if (record.observations.empty()) return {};
   const auto found = record.observations.back().find("digest");

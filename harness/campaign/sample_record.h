@@ -104,6 +104,10 @@ struct SampleRecord {
 /// Was it lost because the simulator took back what it showed (kOfTheSolver)?
 bool is_of_the_solver(const SampleRecord& record);
 
+/// The reason of a loss without what differs from run to run: what stands in front of the first
+/// colon or bracket, at most 80 bytes. "of the solver", "it ended during `act`".
+std::string loss_kind(std::string_view reason);
+
 /// The digest that the last observation shows; empty if it shows none.
 std::string digest_of(const SampleRecord& record);
 

@@ -142,6 +142,10 @@ OrderedJson json_of(const TraceResult& result, const std::vector<ComparedFluents
               {"rejected", result.rejected},
               {"strayed", result.strayed}};
   if (result.of_the_solver > 0) out["of_the_solver"] = result.of_the_solver;
+  for (const auto& lost : result.losses) {
+    out["losses"].push_back(
+        {{"reason", lost.kind}, {"count", lost.count}, {"example", lost.example}});
+  }
   out["certified"] = {{"confidence", result.certified_level},
                       {"epsilon", result.certified_epsilon}};
   out["error_share"] = result.error_share;

@@ -149,6 +149,13 @@ class Summary {
       if (trace.law) {
         if (const auto refused = trace.law->refused_text(); !refused.empty()) {
           line("refused", refused);
+    tell_traces();
+    std::vector<LossCount> losses;
+    for (const auto& trace : result_.traces) add_losses(trace.losses, losses);
+    if (!losses.empty()) line("lost", loss_words(losses));
+  }
+
+  void tell_traces() {
         }
       }
       line("runs", runs_of(trace) +

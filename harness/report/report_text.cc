@@ -115,6 +115,10 @@ class TextReport {
     }
     line("simulations", runs);
     line("claimed", trace.claim);
+    for (const auto& lost : trace.losses) {
+      line("lost", fmt::format("{}: {}, first in {}.{}", counted(lost.count, "run", "runs"),
+                               lost.kind, trace.trace->number, lost.example));
+    }
     if (trace.loop) {
       certified(trace);
     } else {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "harness/confidence/rounding.h"
 
 namespace parallax::harness {
@@ -95,6 +97,26 @@ std::string cover_text(const CoverResult& cover) {
   }
   if (cover.end == End::kStopped) text += "; the run was ended before that was settled";
   return text;
+}
+
+std::string loss_words(const std::vector<LossCount>& losses) {
+  std::string out;
+  for (const auto& one : losses) {
+    out += fmt::format("{}{} ({})", out.empty() ? "" : ", ", one.kind, one.count);
+  }
+  return out;
+}
+
+void add_losses(const std::vector<LossCount>& losses, std::vector<LossCount>& all) {
+  for (const auto& one : losses) {
+    const auto known = std::find_if(all.begin(), all.end(),
+                                    [&](const auto& other) { return other.kind == one.kind; });
+    if (known == all.end()) {
+      all.push_back(one);
+    } else {
+      known->count += one.count;
+    }
+  }
 }
 
 std::string event_at(const CampaignTrace& trace, std::size_t t) {

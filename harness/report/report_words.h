@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "harness/campaign/campaign_result.h"
 
@@ -28,6 +29,10 @@ std::string coverage_shares_text(const CampaignResult& result);
 std::string rate_words(const LoopResult& loop, const CauseRate& rate);
 /// "12 of 14 behaviours of plan and model were shown; each of the others comes ..."
 std::string cover_text(const CoverResult& cover);
+/// "of the solver (2), it ended during `act` (1)": how many were lost by reason
+std::string loss_words(const std::vector<LossCount>& losses);
+/// Adds the counts of one trace to those of others.
+void add_losses(const std::vector<LossCount>& losses, std::vector<LossCount>& all);
 /// "Go(r2) (fetch.lisp:4)"
 std::string event_at(const CampaignTrace& trace, std::size_t t);
 

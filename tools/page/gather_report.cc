@@ -123,6 +123,9 @@ PageTrace trace_of(const json& entry) {
   out.simulations = whole(entry, "simulations");
   out.clean = whole(entry, "clean");
   out.lost = whole(entry, "lost");
+  for (const auto& lost : list(entry, "losses")) {
+    out.losses.push_back({text(lost, "reason"), whole(lost, "count"), whole(lost, "example")});
+  }
   if (const auto* certified = base::json_member(entry, "certified")) {
     out.certified_confidence = field<double>(*certified, "confidence");
     out.certified_epsilon = field<double>(*certified, "epsilon", 1.0);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "harness/campaign/campaign_result.h"
 #include "harness/confidence/criterion_spec.h"
 
 namespace parallax::harness {
@@ -96,6 +97,7 @@ struct PageTrace {
   std::int64_t simulations = 0, clean = 0, lost = 0;
   double certified_confidence = 0.0, certified_epsilon = 1.0;
   double error_share = 1.0;  // of 1-C that its bound may spend
+  std::vector<harness::LossCount> losses;  // the lost ones by reason
   std::optional<std::int64_t> paper_stopped_at;
   std::string paper_variant;
   std::vector<std::string> not_covered;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "compiler/base/words.h"
+#include "harness/report/report_words.h"
 #include "harness/report/text_layout.h"
 #include "tools/page/markup.h"
 #include "tools/page/sections.h"
@@ -264,6 +265,11 @@ std::string discrepancy_section(const PageData& page, const SourceLinks& links) 
     }
     out += steps_table(steps, marked, links);
     out += differences_table(found);
+  std::vector<harness::LossCount> losses;
+  for (const auto& trace : page.traces) harness::add_losses(trace.losses, losses);
+  if (!losses.empty()) {
+    out += "<div><dt>Lost</dt><dd>" + html_words(harness::loss_words(losses)) + "</dd></div>\n";
+  }
     if (marked && *marked < steps.size()) {
       out += links.excerpt(steps[*marked].source, 2) + axioms_of_step(steps[*marked], links);
     }
@@ -315,10 +321,14 @@ std::string traces_section(const PageData& page, const SourceLinks& links) {
     const auto& trace = page.traces[i];
     out += fmt::format(
         "<details{}><summary>{} <span class=\"tag {}\">{}</span> {} simulations, {} "
-        "clean</summary>\n",
+        "clean{}</summary>\n",
         i < kOpen ? " open" : "", stream_name(page, trace), verdict_class(trace.verdict),
         trace.verdict.empty() ? "not judged" : html_short(trace.verdict), trace.simulations,
-        trace.clean);
+        trace.clean, trace.lost > 0 ? fmt::format(", {} lost", trace.lost) : "");
+    if (!trace.losses.empty()) {
+      out +=
+          "<p class=\"caveat\">Lost: " + html_words(harness::loss_words(trace.losses)) + ".</p>\n";
+    }
     if (!trace.claim.empty()) out += "<p class=\"claim\">" + html_short(trace.claim) + ".</p>\n";
     for (const auto& caveat : trace.caveats) {
       out += "<p class=\"caveat\">" + html_short(caveat) + ".</p>\n";

@@ -4,6 +4,7 @@
 #include <random>
 #include <string>
 
+#include "harness/campaign/run_setup.h"
 #include "tests/harness/campaign/two_regions.h"
 
 namespace parallax::harness::test {
@@ -46,6 +47,10 @@ TEST_CASE("what the simulator took back is lost at once, and no discrepancy") {
   const auto& trace = result->traces[0];
   CHECK(trace.lost == 1);
   CHECK(trace.of_the_solver == 1);
+  REQUIRE(trace.losses.size() == 1);
+  CHECK(trace.losses[0].kind == "of the solver");
+  CHECK(trace.losses[0].count == 1);
+  CHECK(trace.losses[0].example == 5);
   CHECK(trace.retried == 0);
   CHECK(resets == trace.simulations + 2);  // two repetitions of the first clean one
   const bool told = std::any_of(trace.caveats.begin(), trace.caveats.end(), [](const auto& text) {
@@ -58,6 +63,35 @@ TEST_CASE("what the simulator took back is lost at once, and no discrepancy") {
   bench.options.resume = true;
   REQUIRE(bench.run().has_value());
   CHECK(slurp(bench.journal()) == recorded);
+}
+
+TEST_CASE("losses are counted by their reasons, without what differs from run to run") {
+  const auto lose = [](TraceResult& trace, std::int64_t sample, const std::string& reason) {
+    SampleRecord record;
+    record.sample = sample;
+    record.reason = reason;
+    count_loss(record, trace);
+  };
+  TraceResult trace;
+  lose(trace, 3, "no reply to `act` within 10 s (ended by signal 9)");
+  lose(trace, 4, "of the solver: `box` left a grip that holds 2.3 times what it has to");
+  lose(trace, 7, "no reply to `act` within 10 s (exit code 1)");
+  lose(trace, 9, "");
+  lose(trace, 11, std::string(79, 'x') + "\xC3\xA4 is longer than a line should be");
+  REQUIRE(trace.losses.size() == 4);
+  CHECK(trace.losses[0].kind == "no reply to `act` within 10 s");
+  CHECK(trace.losses[0].count == 2);
+  CHECK(trace.losses[0].example == 3);
+  CHECK(trace.losses[1].kind == "of the solver");
+  CHECK(trace.losses[2].kind == "no reason given");
+  CHECK(trace.losses[3].kind == std::string(79, 'x') + "...");
+  // All reasons of a foreign simulator may differ: their number is bounded, none is forgotten.
+  for (int i = 0; i < 100; ++i) lose(trace, 20 + i, "case " + std::to_string(i));
+  CHECK(trace.losses.size() == 8);
+  CHECK(trace.losses.back().kind == "other reasons");
+  std::int64_t all = 0;
+  for (const auto& one : trace.losses) all += one.count;
+  CHECK(all == trace.lost);
 }
 
 TEST_CASE("neither is a loss repeated when a discrepancy is simulated once more") {

@@ -70,6 +70,23 @@ TEST_CASE("a report with a value nested without end does not end the program") {
   CHECK(made.code <= 3);
 }
 
+TEST_CASE("the page counts lost simulations by reason, in its head and with each trace") {
+  const CliFixture cli;
+  const auto folder = exact_run(cli);
+  auto report = Json::parse(cli.read("sticks/report.json"));
+  auto& trace = report.at("traces").at(0);
+  trace["lost"] = 3;
+  trace["losses"] = {{{"reason", "of the solver"}, {"count", 2}, {"example", 4}},
+                     {{"reason", "<b>it ended"}, {"count", 1}, {"example", 6}}};
+  cli.write("sticks/report.json", report.dump());
+  REQUIRE(at_source(cli, {"report", folder}).code == 0);
+  const auto html = cli.read("sticks/report.html");
+  const std::string counts = "of the solver (2), &lt;b&gt;it ended (1)";
+  CHECK(html.find("<dt>Lost</dt><dd>" + counts + "</dd>") != std::string::npos);
+  CHECK(html.find(", 3 lost</summary>") != std::string::npos);
+  CHECK(html.find("Lost: " + counts + ".") != std::string::npos);
+}
+
 TEST_CASE("a page replaces an earlier page, and nothing else") {
   const CliFixture cli;
   const auto folder = exact_run(cli);
