@@ -7,6 +7,7 @@
 #include "harness/report/law_json.h"
 #include "harness/report/opinion_words.h"
 #include "harness/report/report.h"
+#include "harness/report/standing.h"
 #include "harness/report/text_layout.h"
 #include "harness/simulator/state_json.h"
 
@@ -141,11 +142,11 @@ OrderedJson json_of(const TraceResult& result, const std::vector<ComparedFluents
               {"retried", result.retried},
               {"rejected", result.rejected},
               {"strayed", result.strayed}};
-  if (result.of_the_solver > 0) out["of_the_solver"] = result.of_the_solver;
   for (const auto& lost : result.losses) {
     out["losses"].push_back(
         {{"reason", lost.kind}, {"count", lost.count}, {"example", lost.example}});
   }
+  if (result.of_the_solver > 0) out["of_the_solver"] = result.of_the_solver;
   out["certified"] = {{"confidence", result.certified_level},
                       {"epsilon", result.certified_epsilon}};
   out["error_share"] = result.error_share;
@@ -249,6 +250,8 @@ OrderedJson json_of(const CampaignResult& result, const Discrepancy& found) {
               {"outcomes", std::move(outcomes)},
               {"words", discrepancy_sentence(result, found)},
               {"replay", replay_command(result.replay_folder, found)}};
+  const auto standing = standing_of(result, found);
+  out["standing"] = {{"is", to_string(standing.is)}, {"words", standing.words}};
   if (found.path) add_path(found, out);
   return out;
 }

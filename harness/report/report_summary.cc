@@ -14,6 +14,7 @@
 #include "harness/report/opinion_words.h"
 #include "harness/report/report.h"
 #include "harness/report/report_words.h"
+#include "harness/report/standing.h"
 #include "harness/report/text_layout.h"
 
 namespace parallax::harness {
@@ -25,12 +26,12 @@ constexpr std::size_t kMaxEvents = 10, kMaxTraces = 6, kMaxNotes = 3, kMaxFurthe
 class Summary {
  public:
   Summary(const CampaignResult& result, const ReportStyle& style)
-      : result_(result), style_(style) {}
+      : result_(result), style_(style), found_(headline_order(result)) {}
 
   std::string write() {
     headline();
-    if (!result_.discrepancies.empty()) {
-      out_ += discrepancy_summary(result_, result_.discrepancies.front(), style_);
+    if (!found_.empty()) {
+      out_ += discrepancy_summary(result_, *found_.front(), style_);
       further_discrepancies();
       out_ += '\n';
     }
@@ -65,10 +66,11 @@ class Summary {
   // The verdict in a sentence.
 
   void headline() {
-    const auto word = verdict_word(result_.verdict, style_.color);
+    const auto word = headline_verdict(result_, style_.color);
+    const bool differs = result_.verdict == CampaignVerdict::kDiscrepancy && !found_.empty();
     std::string text;
-    if (result_.verdict == CampaignVerdict::kDiscrepancy && !result_.discrepancies.empty()) {
-      text = discrepancy_sentence(result_, result_.discrepancies.front());
+    if (differs) {
+      text = discrepancy_sentence(result_, *found_.front());
     } else if (result_.traces.empty()) {
       text = result_.interrupted ? "interrupted before anything was compared"
                                  : "no trace, so nothing was compared";
@@ -80,9 +82,14 @@ class Summary {
       text = why_inconclusive();
     }
     // The word carries its colour, of which the width knows nothing.
-    const auto plain = std::string(verdict_word(result_.verdict, false));
+    const auto plain = headline_verdict(result_, false);
     auto lines = wrapped(plain + (text.empty() ? "" : ": "), text, 2);
     out_ += lines.replace(0, plain.size(), word);
+    if (differs) {
+      // Where nobody was asked, the command that asks is among the pointers below.
+      const auto standing = standing_of(result_, *found_.front());
+      if (standing.is != Standing::kNotAsked) line("standing", standing.words);
+    }
     if (result_.traces.size() == 1) {
       line("claim", result_.claim.empty() ? result_.traces.front().claim : result_.claim);
     }
@@ -115,13 +122,13 @@ class Summary {
 
   /// With --keep-going: a line each.
   void further_discrepancies() {
-    const auto& all = result_.discrepancies;
-    for (std::size_t i = 1; i < all.size() && i <= kMaxFurther; ++i) {
-      line(fmt::format("{}.{}", all[i].trace, all[i].sample),
-           discrepancy_sentence(result_, all[i]));
+    for (std::size_t i = 1; i < found_.size() && i <= kMaxFurther; ++i) {
+      const bool in_doubt = standing_of(result_, *found_[i]).is == Standing::kInDoubt;
+      line(fmt::format("{}.{}", found_[i]->trace, found_[i]->sample),
+           (in_doubt ? "in doubt: " : "") + discrepancy_sentence(result_, *found_[i]));
     }
-    if (all.size() > 1 + kMaxFurther) {
-      line("", fmt::format("and {} more discrepancies", all.size() - 1 - kMaxFurther));
+    if (found_.size() > 1 + kMaxFurther) {
+      line("", fmt::format("and {} more discrepancies", found_.size() - 1 - kMaxFurther));
     }
   }
 
@@ -142,13 +149,6 @@ class Summary {
   }
 
   void traces() {
-    const auto& all = result_.traces;
-    if (all.size() == 1) {
-      const auto& trace = all.front();
-      if (trace.search) line("searched", search_text(*trace.search, trace.trace->number));
-      if (trace.law) {
-        if (const auto refused = trace.law->refused_text(); !refused.empty()) {
-          line("refused", refused);
     tell_traces();
     std::vector<LossCount> losses;
     for (const auto& trace : result_.traces) add_losses(trace.losses, losses);
@@ -156,6 +156,13 @@ class Summary {
   }
 
   void tell_traces() {
+    const auto& all = result_.traces;
+    if (all.size() == 1) {
+      const auto& trace = all.front();
+      if (trace.search) line("searched", search_text(*trace.search, trace.trace->number));
+      if (trace.law) {
+        if (const auto refused = trace.law->refused_text(); !refused.empty()) {
+          line("refused", refused);
         }
       }
       line("runs", runs_of(trace) +
@@ -312,11 +319,15 @@ class Summary {
     if (!result_.journal_open) return;
     const auto folder = shell_word(result_.replay_folder);
     std::vector<std::string> commands = {fmt::format("parallax report {}", folder)};
-    if (!result_.discrepancies.empty()) {
-      const auto& found = result_.discrepancies.front();
+    if (!found_.empty()) {
+      const auto& found = *found_.front();
+      // Without a simulation the commands take the run's first discrepancy.
+      const auto which = &found == &result_.discrepancies.front()
+                             ? std::string()
+                             : fmt::format(" --sample {}.{}", found.trace, found.sample);
       commands.push_back(replay_command(result_.replay_folder, found));
-      commands.push_back(fmt::format("parallax confirm {}", folder));
-      commands.push_back(fmt::format("parallax explain {}", folder));
+      commands.push_back(fmt::format("parallax confirm {}{}", folder, which));
+      commands.push_back(fmt::format("parallax explain {}{}", folder, which));
       commands.push_back(fmt::format("parallax repair {}", folder));
     } else if (result_.interrupted && !result_.failed) {
       commands.push_back(
@@ -330,6 +341,7 @@ class Summary {
 
   const CampaignResult& result_;
   const ReportStyle& style_;
+  std::vector<const Discrepancy*> found_;  // the one of the headline in front
   std::string out_;
 };
 

@@ -13,6 +13,7 @@
 #include "harness/report/opinion_words.h"
 #include "harness/report/report.h"
 #include "harness/report/report_words.h"
+#include "harness/report/standing.h"
 #include "harness/report/text_layout.h"
 
 namespace parallax::harness {
@@ -114,11 +115,11 @@ class TextReport {
                           counted(trace.rejected, "invalid start was", "invalid starts were"));
     }
     line("simulations", runs);
-    line("claimed", trace.claim);
     for (const auto& lost : trace.losses) {
       line("lost", fmt::format("{}: {}, first in {}.{}", counted(lost.count, "run", "runs"),
                                lost.kind, trace.trace->number, lost.example));
     }
+    line("claimed", trace.claim);
     if (trace.loop) {
       certified(trace);
     } else {
@@ -268,6 +269,7 @@ class TextReport {
     out_ += fmt::format("\n  {} in simulation {}, seed {}, {}\n",
                         painted("discrepancy", "1;31", style_.color), id, found.seed,
                         confirmation(found));
+    line("standing", standing_of(result_, found).words, 4);
     line("cause", cause(found), 4);
     if (found.path) return path_discrepancy(found);
     const bool on_the_way =
@@ -400,7 +402,7 @@ class TextReport {
   }
 
   void foot() {
-    out_ += fmt::format("\nverdict: {}\n", verdict(result_.verdict));
+    out_ += fmt::format("\nverdict: {}\n", headline_verdict(result_, style_.color));
     if (result_.execution == Execution::kOpenLoop) {
       line("traces", fmt::format("{}, {}", result_.traces.size(), exploration_text(result_)));
     }

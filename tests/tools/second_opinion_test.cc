@@ -47,6 +47,7 @@ TEST_CASE("who is asked about his own run agrees with all of it") {
   CHECK(opinion["clean"]["unanswered"] == 0);
   CHECK(holds(cli.read("r/report.txt"), "both engines disagree with the model"));
   CHECK_FALSE(holds(cli.read("r/report.txt"), "is in doubt"));
+  CHECK(holds(cli.read("r/report.txt"), "verdict: discrepancy, confirmed\n"));
   CHECK(Json::parse(cli.read("r/report.json"))["second_opinion"] == opinion);
 }
 
@@ -77,6 +78,10 @@ TEST_CASE(
   REQUIRE(opinion["causes"].size() == 1);
   CHECK(opinion["causes"][0]["doubt"] == "simulator");
   CHECK(opinion["causes"][0]["only_first"] == 1);
+  CHECK(holds(cli.read("r/report.txt"), "verdict: discrepancy in doubt\n"));
+  REQUIRE(cli.parallax({"report", "r"}).code == 0);
+  CHECK(holds(cli.read("r/report.html"), "<h1>Discrepancy in doubt</h1>"));
+  CHECK(holds(cli.read("r/report.html"), "In doubt: ode agrees with the model."));
   CHECK(holds(cli.read("r/report.txt"), "only ode does"));
   CHECK(holds(cli.read("r/report.txt"), "the simulator is in doubt"));
   CHECK_FALSE(holds(cli.read("r/report.txt"), "both engines"));

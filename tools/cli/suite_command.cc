@@ -99,6 +99,7 @@ LoopOptions loop_options(const SuiteOptions& options, bool keep_passes, const Su
   out.runner.seed = options.seed;
   out.runner.retries = options.retries;
   out.runner.update_goldens = options.update_goldens;
+  out.runner.confirms = options.confirm;
   out.runner.allow_commands = options.commands.allow;
   out.runner.allow_outside = invocation.form().allow_outside;
   out.runner.elsewhere = launcher_words(options.launcher);
@@ -143,6 +144,7 @@ std::string foreign_to_mutants(const SuiteOptions& options) {
   if (options.shard != "1/1") return "--shard";
   if (options.rerun_failed) return "--rerun-failed";
   if (options.update_goldens) return "--update-goldens";
+  if (options.confirm) return "--confirm";
   if (!options.junit.empty()) return "--junit";
   if (!options.markdown.empty()) return "--markdown";
   if (!options.annotations.empty()) return "--annotations";
@@ -332,6 +334,8 @@ Command suite_command() {
   command.option("--retry", options->retries, "More attempts where a case does not pass")
       .check(WholeNumber{0, 100})
       .show_default();
+  command.flag("--confirm", options->confirm,
+               "Repeat the discrepancy of a case that fails, as `parallax confirm` does");
   command
       .option("--quarantine", options->quarantine,
               "A list of cases that may fail for now, each with its reason")

@@ -24,6 +24,7 @@ struct SuiteOptions {
   bool update_goldens = false;
   bool force = false;
   bool rerun_failed = false, resume = false;
+  bool confirm = false;
   bool no_cache = false;
   bool fast = false;
   CommandPermission commands;

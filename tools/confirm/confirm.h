@@ -10,6 +10,7 @@
 #include "harness/campaign/sample_runner.h"
 #include "harness/cause/cause_kind.h"
 #include "harness/cause/start_line.h"
+#include "harness/report/standing.h"
 #include "tools/app/context.h"
 #include "tools/app/discrepancy.h"
 #include "tools/app/evidence.h"
@@ -114,6 +115,8 @@ std::string confirm_text(const Confirmation& confirmation, const std::string& ru
 std::string confirm_json(const Confirmation& confirmation);
 std::string threshold_text(const Threshold& threshold, const std::string& run_dir);
 std::string threshold_json(const Threshold& threshold);
+/// The standing of the discrepancy in a headline, by the repetitions.
+harness::DiscrepancyStanding standing_of(const Confirmation& confirmation);
 /// The findings, a sentence each.
 std::vector<std::string> confirm_sentences(const Confirmation& confirmation);
 std::vector<std::string> threshold_sentences(const Threshold& threshold);
@@ -125,6 +128,7 @@ std::string parting_words(const RecordedDiscrepancy& found);
 /// Findings of `confirm` and `threshold` about one simulation, as sentences, read from its run
 /// folder.
 struct KeptFindings {
+  harness::DiscrepancyStanding standing;  // by `confirm`
   std::vector<std::string> confirmed;
   std::vector<std::string> thresholds;
 };

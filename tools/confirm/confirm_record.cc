@@ -45,6 +45,10 @@ Json json_of(const std::optional<harness::Persistence>& seen) {
   return out;
 }
 
+Json json_of(const harness::DiscrepancyStanding& standing) {
+  return {{"is", to_string(standing.is)}, {"words", standing.words}};
+}
+
 Json json_of(const harness::BorderBracket& border) {
   Json out = {{"fails_at", border.fails},
               {"not_at", border.other},
@@ -68,6 +72,7 @@ Json confirmation_document(const Confirmation& confirmation) {
               {"digest", confirmation.digest},
               {"discrepancy", confirmation.words},
               {"verdict", to_string(confirmation.verdict())},
+              {"standing", json_of(standing_of(confirmation))},
               {"finished", confirmation.finished()},
               {"ended_by", end_word(confirmation.end)},
               {"simulations", confirmation.runs}};
@@ -188,7 +193,13 @@ KeptFindings kept_findings(const std::string& run_dir, const harness::SampleReco
   const Simulation simulation{{record.trace, record.sample}, record.seed, record.digest};
   KeptFindings out;
   const auto confirmed = read_kept(run_dir, kConfirmFile);
-  if (is_of(confirmed, simulation)) out.confirmed = sentences_of(confirmed);
+  if (is_of(confirmed, simulation)) {
+    out.confirmed = sentences_of(confirmed);
+    if (const auto* standing = base::json_member(confirmed, "standing")) {
+      out.standing = {harness::standing_named(text_at(*standing, "is")),
+                      text_at(*standing, "words")};
+    }
+  }
   const auto kept = read_kept(run_dir, kThresholdFile);
   const auto* list = base::json_member(kept, "thresholds");
   if (list == nullptr || !list->is_array()) return out;

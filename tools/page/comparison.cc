@@ -111,10 +111,15 @@ std::string verdict_cell(const std::string& verdict) {
 
 std::string overview(const std::vector<PageData>& pages) {
   std::string rows;
-  rows += row("Verdict", pages, [](const PageData& page) { return verdict_cell(page.verdict); });
+  rows += row("Verdict", pages, [](const PageData& page) {
+    if (!is_in_doubt(page)) return verdict_cell(page.verdict);
+    return "<span class=\"tag open\">" + std::string(headline_word(harness::Standing::kInDoubt)) +
+           "</span>";
+  });
   rows += row("What parted", pages, [](const PageData& page) {
-    return page.discrepancies.empty() ? std::string("nothing")
-                                      : html_words(page.discrepancies.front().words);
+    const auto* told = told_discrepancy(page);
+    return told == nullptr ? std::string("nothing")
+                           : html_words(told->words + " (" + told->standing.words + ")");
   });
   rows += row("Scenario", pages, [](const PageData& page) { return html_short(page.scenario); });
   rows += row("Traces", pages, [](const PageData& page) {

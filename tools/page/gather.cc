@@ -81,6 +81,12 @@ void read_report(const std::string& folder, Context& context, PageData& page) {
         "report.json is no report of a run, or only half of one: verdict and claims are missing. " +
         messages_of(context));
   }
+  // The folder may have been moved since the report named it.
+  for (std::size_t i = 0; i < page.discrepancies.size(); ++i) {
+    auto& found = page.discrepancies[i];
+    if (found.standing.is != harness::Standing::kNotAsked) continue;
+    found.standing = harness::standing_not_asked(folder, found.trace, found.sample, i == 0);
+  }
 }
 
 /// Adds the findings that `confirm` and `threshold` left in the folder about the report's
@@ -88,11 +94,12 @@ void read_report(const std::string& folder, Context& context, PageData& page) {
 void add_findings(const harness::JournalText& journal, PageData& page) {
   constexpr std::size_t kMost = 50;  // discrepancies that are asked about
   for (std::size_t i = 0; i < page.discrepancies.size() && i < kMost; ++i) {
-    const auto& found = page.discrepancies[i];
+    auto& found = page.discrepancies[i];
     const auto record =
         journal.samples.find({found.trace, found.sample, harness::DrawPhase::kCertify});
     if (record == journal.samples.end()) continue;
     auto kept = kept_findings(page.folder, record->second);
+    found.standing = harness::both_standings(found.standing, kept.standing);
     PageFinding finding{sample_name(found.trace, found.sample), std::move(kept.confirmed)};
     finding.sentences.insert(finding.sentences.end(), kept.thresholds.begin(),
                              kept.thresholds.end());

@@ -172,6 +172,9 @@ PageDiscrepancy discrepancy_of(const json& entry) {
     out.reason = text(*cause, "reason");
   }
   if (out.words.empty()) out.words = out.cause;
+  if (const auto* standing = base::json_member(entry, "standing")) {
+    out.standing = {harness::standing_named(text(*standing, "is")), text(*standing, "words")};
+  }
   if (const auto* differs = base::json_member(entry, "differs")) {
     out.parting_event = field<std::int64_t>(*differs, "event");
   }

@@ -10,6 +10,7 @@
 
 #include "harness/campaign/campaign_result.h"
 #include "harness/confidence/criterion_spec.h"
+#include "harness/report/standing.h"
 
 namespace parallax::harness {
 struct Recording;
@@ -71,6 +72,7 @@ struct PageDiscrepancy {
   std::int64_t trace = 0, sample = 0, first_divergence = 0;
   std::optional<std::int64_t> parting_event;
   std::string words, cause, reason, repeated, kind;
+  harness::DiscrepancyStanding standing;  // by the run's second opinion and `confirm`
   std::vector<PageDifference> first, fluents;
   std::vector<std::pair<std::string, std::string>> start;  // variable, value
 };
@@ -95,9 +97,9 @@ struct PageTrace {
   std::vector<std::string> initial_state;  // what holds at the start
   std::vector<std::string> caveats;
   std::int64_t simulations = 0, clean = 0, lost = 0;
+  std::vector<harness::LossCount> losses;  // the lost ones by reason
   double certified_confidence = 0.0, certified_epsilon = 1.0;
   double error_share = 1.0;  // of 1-C that its bound may spend
-  std::vector<harness::LossCount> losses;  // the lost ones by reason
   std::optional<std::int64_t> paper_stopped_at;
   std::string paper_variant;
   std::vector<std::string> not_covered;

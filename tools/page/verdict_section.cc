@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/words.h"
 #include "harness/report/report_words.h"
 #include "harness/report/text_layout.h"
@@ -32,13 +33,41 @@ std::string replay_words(const PageData& page, std::int64_t trace, std::int64_t 
                      sample_name(trace, sample));
 }
 
+const PageDiscrepancy* told_discrepancy(const PageData& page) {
+  if (page.discrepancies.empty()) return nullptr;
+  const auto found =
+      std::find_if(page.discrepancies.begin(), page.discrepancies.end(),
+                   [](const auto& one) { return one.standing.is != harness::Standing::kInDoubt; });
+  return found == page.discrepancies.end() ? &page.discrepancies.front() : &*found;
+}
+
+bool is_in_doubt(const PageData& page) {
+  const auto* told = told_discrepancy(page);
+  return told != nullptr && told->standing.is == harness::Standing::kInDoubt;
+}
+
 namespace {
 
 std::string verdict_title(const PageData& page) {
   if (page.verdict == "no-discrepancy") return "No discrepancy found";
-  if (page.verdict == "discrepancy") return "Discrepancy";
+  if (page.verdict == "discrepancy") {
+    const auto* told = told_discrepancy(page);
+    if (told == nullptr) return "Discrepancy";
+    std::string title(harness::headline_word(told->standing.is));
+    title.front() = 'D';
+    return title;
+  }
   if (page.verdict == "inconclusive") return "Inconclusive";
   return page.running ? "Not finished" : "No verdict";
+}
+
+/// What parted model and world, and how that stands.
+std::string discrepancy_lead(const PageDiscrepancy& found) {
+  auto out = "<p class=\"lead\">" + html_words(found.words) + ".</p>\n";
+  auto words = found.standing.words;
+  if (words.empty()) return out;
+  words.front() = base::to_upper(words.front());
+  return out + "<p class=\"standing\">" + html_words(words) + ".</p>\n";
 }
 
 std::string fact(std::string_view name, std::string_view value) {
@@ -203,11 +232,12 @@ std::string verdict_section(const PageData& page) {
   std::string out = fmt::format(
       "<header class=\"top {}\">\n<p class=\"kicker\">parallax report &middot; "
       "{}</p>\n<h1>{}</h1>\n",
-      verdict_class(page.verdict), html_short(page.scenario), verdict_title(page));
-  if (!page.discrepancies.empty()) {
-    out += "<p class=\"lead\">" + html_words(page.discrepancies.front().words) + ".</p>\n";
-  }
-  if (page.rule) {
+      is_in_doubt(page) ? "open" : verdict_class(page.verdict), html_short(page.scenario),
+      verdict_title(page));
+  const auto* told = told_discrepancy(page);
+  if (told != nullptr) out += discrepancy_lead(*told);
+  // It is a rule of the first one.
+  if (page.rule && told == page.discrepancies.data()) {
     const auto& rule = *page.rule;
     out += fmt::format(
         "<p class=\"lead\">It happens where {}: {} of {} simulations there, and {} of {} "
@@ -237,6 +267,11 @@ std::string verdict_section(const PageData& page) {
         fact("Explored", page.exploration == "stopped" ? "stopped before all traces were explored"
                                                        : page.exploration);
   }
+  std::vector<harness::LossCount> losses;
+  for (const auto& trace : page.traces) harness::add_losses(trace.losses, losses);
+  if (!losses.empty()) {
+    out += "<div><dt>Lost</dt><dd>" + html_words(harness::loss_words(losses)) + "</dd></div>\n";
+  }
   out += fact("Criterion", page.criterion) + fact("Simulator", page.simulator) +
          fact("Seed", std::to_string(page.seed)) + fact("Run folder", page.folder);
   out += "</dl>\n</header>\n\n";
@@ -259,17 +294,12 @@ std::string discrepancy_section(const PageData& page, const SourceLinks& links) 
     }
     const auto marked = parting_step(found, steps);
     out += fmt::format("<article><h3>Simulation {}</h3>\n", sample_name(found.trace, found.sample));
-    if (i > 0) out += "<p class=\"lead\">" + html_words(found.words) + ".</p>\n";
+    if (&found != told_discrepancy(page)) out += discrepancy_lead(found);
     if (!found.reason.empty()) {
       out += "<p>The simulator says: " + html_words(found.reason) + ".</p>\n";
     }
     out += steps_table(steps, marked, links);
     out += differences_table(found);
-  std::vector<harness::LossCount> losses;
-  for (const auto& trace : page.traces) harness::add_losses(trace.losses, losses);
-  if (!losses.empty()) {
-    out += "<div><dt>Lost</dt><dd>" + html_words(harness::loss_words(losses)) + "</dd></div>\n";
-  }
     if (marked && *marked < steps.size()) {
       out += links.excerpt(steps[*marked].source, 2) + axioms_of_step(steps[*marked], links);
     }

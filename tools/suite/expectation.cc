@@ -210,6 +210,23 @@ std::string first_discrepancy(const std::string& run_document) {
   return {};
 }
 
+ToldStanding standing_of_run(std::string_view run_document) {
+  const auto run = base::parse_json(run_document);
+  ToldStanding first;
+  for (const auto& found : member(run, "discrepancies", Json::array())) {
+    auto told = standing_of_confirmation(base::json_text(found));
+    if (told.is != "in-doubt") return told;
+    if (first.is.empty()) first = std::move(told);
+  }
+  return first;
+}
+
+ToldStanding standing_of_confirmation(std::string_view document) {
+  const auto standing = member(base::parse_json(document), "standing", Json::object());
+  return {member(standing, "is", "").get<std::string>(),
+          base::printable(member(standing, "words", "").get<std::string>())};
+}
+
 std::string blame(std::string_view explanation) {
   const auto told = base::parse_json(explanation);
   const auto sets = member(told, "sets", Json::array());

@@ -24,6 +24,17 @@ std::string first_error(const std::string& document);
 /// The first discrepancy of a run, in words; empty without one.
 std::string first_discrepancy(const std::string& run_document);
 
+/// The standing of the first discrepancy in a document.
+struct ToldStanding {
+  std::string is;     // "not-asked", "stands", "in-doubt"; empty: there is no discrepancy
+  std::string words;  // a clause
+};
+/// The standing in a document of `parallax run --json`: that of the first discrepancy that is not
+/// in doubt, or else of the first.
+ToldStanding standing_of_run(std::string_view run_document);
+/// The standing in a document of `parallax confirm --json`; empty where it gives none.
+ToldStanding standing_of_confirmation(std::string_view document);
+
 /// The cause named by the document of `parallax explain --json`: its words, and below them the
 /// axioms of the first set with their places. Empty if it names none.
 std::string blame(std::string_view explanation);

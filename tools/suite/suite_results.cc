@@ -96,6 +96,7 @@ Json to_json(const CaseResult& result) {
           {"repeatable", result.repeatable},
           {"ledger", result.ledger},
           {"verdict", result.verdict},
+          {"standing", result.standing},
           {"rates", base::parse_json(encode_rates(result.rates))},
           {"shown", result.shown},
           {"gone", result.gone}};
@@ -120,6 +121,7 @@ std::optional<CaseResult> result_from_json(const Json& json) {
   read(json, "repeatable", out.repeatable);
   read(json, "ledger", out.ledger);
   read(json, "verdict", out.verdict);
+  read(json, "standing", out.standing);
   if (const auto* rates = base::json_member(json, "rates")) {
     out.rates = decode_rates(base::json_text(*rates));
   }

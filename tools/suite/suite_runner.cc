@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -82,6 +83,28 @@ std::string explanation_of_run(const fs::path& folder, const harness::Expectatio
                         footprint, stop);
 }
 
+/// Repetitions of a confirmation with other seeds, and with half the step.
+constexpr const char* kRepeats = "5";
+
+/// Asks `parallax confirm` about the first discrepancy of a run. Its start stays as it is, so that
+/// only its repetitions are simulated.
+ToldStanding confirmation_of_run(const fs::path& folder, const harness::Expectation& expect,
+                                 const RunnerOptions& options, Footprint& footprint,
+                                 const std::atomic<bool>& stop) {
+  const auto limit = expect.time_limit_s ? expect.time_limit_s : options.time_limit_s;
+  CommandWords words{{"confirm", "--json", "--runs", "1", "--repeats", kRepeats, "--time-limit",
+                      fmt::format("{}", limit.value_or(kBlameLimitS)), "--quiet", "--color=never"},
+                     {folder.string()}};
+  if (options.allow_commands) words.options.emplace_back("--allow-commands");
+  if (options.allow_outside) words.options.emplace_back("--allow-outside");
+  return standing_of_confirmation(run_this_program(words, footprint, stop).out);
+}
+
+/// The first line of a problem with a clause behind it.
+void add_clause(const std::string& clause, std::string& problem) {
+  problem.insert(std::min(problem.find('\n'), problem.size()), "; the discrepancy is " + clause);
+}
+
 /// Makes room for a new run. Removes only files that a run has left there.
 bool clear_run_folder(const fs::path& folder) {
   std::error_code error;
@@ -131,9 +154,12 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
   if (wants_kind && !discrepancy.empty()) {
     explanation = explanation_of_run(folder, expect, true, options, footprint, stop);
   }
+  const auto before = result.problems.size();
   const auto problems = unmet(expect, child.out, explanation);
   result.problems.insert(result.problems.end(), problems.begin(), problems.end());
+  std::optional<std::size_t> told_at;  // the problem that tells the discrepancy
   if (!problems.empty() && !discrepancy.empty()) {
+    told_at = result.problems.size();
     result.problems.push_back(std::move(discrepancy));
     if (!wants_kind && !options.ends_early) {
       explanation = explanation_of_run(folder, expect, false, options, footprint, stop);
@@ -141,6 +167,17 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
     if (auto why = blame(explanation); !why.empty()) result.problems.push_back(std::move(why));
   }
   if (options.ledger != nullptr) options.ledger->judge(one, shown_run(child.out), result);
+  auto standing = standing_of_run(child.out);
+  if (!standing.is.empty() && result.problems.size() > before) {
+    if (options.confirms) {
+      auto told = confirmation_of_run(folder, expect, options, footprint, stop);
+      if (!told.is.empty()) standing = std::move(told);
+    }
+    // The headline, where that is about the discrepancy; else what tells it, here or by the ledger.
+    const bool is_verdict = expect.verdict && *expect.verdict != result.verdict;
+    add_clause(standing.words, result.problems[is_verdict ? before : told_at.value_or(before)]);
+  }
+  result.standing = standing.is;
   if (result.problems.empty() && result.verdict == "inconclusive" && !expect.verdict) {
     result.outcome = Outcome::kInconclusive;
     result.problems = {"the run is inconclusive, and `expect` has no `verdict`"};

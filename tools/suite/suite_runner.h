@@ -20,6 +20,7 @@ struct RunnerOptions {
   std::uint64_t seed = 1;
   std::int64_t retries = 0;  // more attempts where one did not pass
   bool update_goldens = false;
+  bool confirms = false;                    // discrepancies of cases that fail are repeated
   bool allow_commands = false;              // start what scenarios name as their simulators
   bool allow_outside = false;               // files may name any other
   const SuiteLedger* ledger = nullptr;      // of known discrepancies; null: none is asked

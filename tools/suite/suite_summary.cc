@@ -103,6 +103,7 @@ std::string summary_document(const SuiteRecord& record) {
     if (!result.reused.empty()) item["reused"] = result.reused;
     if (result.attempts > 1) item["attempts"] = result.attempts;
     if (!result.shown.empty()) item["known"] = result.shown;
+    if (!result.standing.empty()) item["standing"] = result.standing;
     if (is_quarantined(record.cases()[i], result, record.quarantine())) {
       item["quarantined"] = record.quarantine().at(record.cases()[i].name());
     }

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "compiler/base/utf8.h"
+#include "harness/campaign/second_opinion.h"
 #include "harness/report/text_layout.h"
 #include "tests/harness/campaign/named_trace.h"
 
@@ -97,6 +98,7 @@ TEST_CASE("the text fits 100 columns and carries no colour unless asked for") {
   CHECK(text.ends_with('\n'));
   const auto colored = campaign_text(result, {true});
   CHECK(colored.find("\x1b[1;31mdiscrepancy\x1b[0m") != std::string::npos);
+  CHECK(colored.find("verdict: \x1b[1;31mdiscrepancy, not confirmed\x1b[0m") != std::string::npos);
 }
 
 TEST_CASE("the text says events with places, both figures, the claim, and how to repeat") {
@@ -145,7 +147,8 @@ TEST_CASE("the summary says first what parted them, then where and how often") {
   const auto summary = [&] { return campaign_summary(result, {}); };
   const auto text = summary();
   CHECK(
-      text.starts_with("discrepancy: at the start RobotIn(r2) is false, and the model says true"));
+      text.starts_with("discrepancy, not confirmed: at the start RobotIn(r2) is false, and the "
+                       "model says true\n"));
   for (const std::string part :
        {"     0  Go(r2)    fetch.lisp:4   ok\n", "     1  PickUp()  fetch.lisp:10  ",
         "    RobotIn(r2)  true       false     at the start\n",
@@ -163,18 +166,17 @@ TEST_CASE("the summary says first what parted them, then where and how often") {
   found.cause = {"PickUp(): box-lost", "box-lost: nothing in the gripper"};
   found.first_divergence = 2;
   found.first = found.fluents;
-  CHECK(
-      summary().starts_with("discrepancy: PickUp() fails (nothing between the pads \\u001b[31m), "
-                            "and the model says that it\n"
-                            "  succeeds\n"));
+  CHECK(unwrapped(summary()).starts_with(
+      "discrepancy, not confirmed: PickUp() fails (nothing between "
+      "the pads \\u001b[31m), and the model says that it succeeds "));
   CHECK(summary().find("  *  1  PickUp()  fetch.lisp:10  failed: nothing between the pads") !=
         std::string::npos);
   CHECK(summary().find("and so at the end") == std::string::npos);
   // No action failed: the summary names an effect that the event should have had.
   found.record.outcomes[1] = {SimStatus::kOk, "", 1.5};
   CHECK(
-      summary().starts_with("discrepancy: after PickUp() BoxIn(r1) is false, and the model says "
-                            "true (1 other fluent differs)\n"));
+      unwrapped(summary()).starts_with("discrepancy, not confirmed: after PickUp() BoxIn(r1) is "
+                                       "false, and the model says true (1 other fluent differs) "));
   found.kind = DiscrepancyKind::kTransient;
 
   CHECK(unwrapped(summary()).find("; it ends as predicted 0 Go(r2)") != std::string::npos);
@@ -187,6 +189,67 @@ TEST_CASE("the summary says first what parted them, then where and how often") {
   result.discrepancies.clear();
   CHECK(summary().starts_with("no discrepancy found\n  claim     with 99 % confidence, fewer"));
   CHECK(summary().find("  events    Go(r2), PickUp()\n") != std::string::npos);
+}
+
+TEST_CASE("a discrepancy that another simulator does not show is in doubt in every headline") {
+  auto result = sample_result();
+  result.journal_open = true;
+  auto opinion = std::make_shared<SecondOpinion>();
+  opinion->first = "ode 0.16.2";
+  opinion->other = "mujoco 2.2.2";
+  opinion->opinions = {{2, 4, true, "Place(r1): box-lost", Answer::kClean, ""}};
+  result.second_opinion = opinion;
+  auto summary = unwrapped(campaign_summary(result, {}));
+  CHECK(
+      summary.starts_with("discrepancy in doubt: at the start RobotIn(r2) is false, and the model "
+                          "says true standing in doubt: mujoco agrees with the model "));
+  CHECK(campaign_text(result, {}).find("\nverdict: discrepancy in doubt\n") != std::string::npos);
+  CHECK(campaign_text(result, {}).find("    standing   in doubt: mujoco agrees with the model\n") !=
+        std::string::npos);
+  CHECK(Json::parse(campaign_json(result, false)).at("discrepancies").at(0).at("standing") ==
+        Json({{"is", "in-doubt"}, {"words", "in doubt: mujoco agrees with the model"}}));
+  // Another one that both show is told in its place, and the commands name it.
+  auto other = result.discrepancies[0];
+  other.sample = 9;
+  other.first = {{"RobotIn(r9)", 1, true, false}};
+  result.discrepancies.push_back(other);
+  opinion->opinions.push_back({2, 9, true, "other", Answer::kDiscrepancy, "the same"});
+  const auto text = campaign_summary(result, {});
+  summary = unwrapped(text);
+  CHECK(
+      summary.starts_with("discrepancy, confirmed: at the start RobotIn(r9) is false, and the "
+                          "model says true standing confirmed: mujoco disagrees with the model as "
+                          "well "));
+  CHECK(text.find("  2.4       in doubt: at the start RobotIn(r2)") != std::string::npos);
+  CHECK(text.find("parallax confirm out/two --sample 2.9\n") != std::string::npos);
+  CHECK(campaign_text(result, {}).find("\nverdict: discrepancy, confirmed\n") != std::string::npos);
+  // No answer is none.
+  opinion->opinions = {{2, 4, true, "Place(r1): box-lost", Answer::kNone, "lost"}};
+  result.discrepancies.pop_back();
+  CHECK(campaign_summary(result, {}).starts_with("discrepancy, not confirmed: "));
+  CHECK(unwrapped(campaign_text(result, {})).find("the step; mujoco gave no answer") !=
+        std::string::npos);
+}
+
+TEST_CASE("what was lost is told by reason") {
+  auto result = sample_result();
+  result.traces[0].lost = 3;
+  result.traces[0].losses = {{"of the solver", 2, 4}, {"it ended during `act`", 1, 6}};
+  result.traces[1].lost = 1;
+  result.traces[1].losses = {{"of the solver", 1, 2}};
+  const auto text = campaign_text(result, {});
+  CHECK(text.find("  lost         2 runs: of the solver, first in 1.4\n") != std::string::npos);
+  CHECK(text.find("  lost         1 run: it ended during `act`, first in 1.6\n") !=
+        std::string::npos);
+  CHECK(campaign_summary(result, {})
+            .find("  lost      of the solver (3), it ended during `act` (1)\n") !=
+        std::string::npos);
+  const auto json = Json::parse(campaign_json(result, false));
+  CHECK(json.at("traces").at(0).at("losses") ==
+        Json({{{"reason", "of the solver"}, {"count", 2}, {"example", 4}},
+              {{"reason", "it ended during `act`"}, {"count", 1}, {"example", 6}}}));
+  CHECK_FALSE(
+      Json::parse(campaign_json(sample_result(), false)).at("traces").at(0).contains("losses"));
 }
 
 TEST_CASE("the summary fits a screen whatever there is to say") {

@@ -210,7 +210,7 @@ TEST_CASE("a page without scripts has verdict, timeline, table and the decisive 
                            "samples", "coverage", "traces", "sources"}) {
     CHECK_MESSAGE(page.ids.contains(part), part);
   }
-  CHECK(page.text.find("Discrepancy\n") != std::string::npos);
+  CHECK(page.text.find("Discrepancy, not confirmed\n") != std::string::npos);
   CHECK(page.text.find("differs first") != std::string::npos);
   CHECK(page.text.find("Simulations fail where b.mass > 0.5") != std::string::npos);
   CHECK(page.text.find("parallax replay 'some name' --sample 1.30") != std::string::npos);
