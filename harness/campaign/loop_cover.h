@@ -10,20 +10,20 @@
 
 namespace parallax::harness {
 
-/// What a run has shown so far of the items that it goes on for, and how rare the others are.
+/// The covered items that a run has shown so far, and a bound on how rare the others are.
 class LoopCover {
  public:
-  /// `watch` outlives the object; of the criterion confidence and epsilon count.
+  /// `watch` outlives the object. Only confidence and epsilon of the criterion are used.
   LoopCover(CoverWatch& watch, const CriterionSpec& criterion);
 
-  /// An execution that came to a result. `admitted`: the model has one like it.
+  /// Notes an execution with a result. `admitted`: the model has one like it.
   void note(const SampleRecord& record, bool admitted);
-  /// Of these, one whose start was drawn: bounds are about them.
+  /// Counts a noted execution whose start was drawn; bounds are about these.
   void add_drawn();
-  /// One whose start was drawn, and which came to no result.
+  /// Counts an execution with a drawn start and without a result.
   void add_lost();
 
-  /// Was everything shown, or is rare what was not?
+  /// Whether every item was shown, or those that were not are rare.
   bool is_over() const;
   /// All executions with a drawn start after which it is over, whatever they show, if no further
   /// one is lost; 0 without items.

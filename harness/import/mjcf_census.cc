@@ -5,7 +5,7 @@
 namespace parallax::harness {
 namespace {
 
-/// What the compiler of MuJoCo 2.2 reads, but for what has no counterpart in our worlds. Attributes
+/// Elements and attributes of MuJoCo 2.2 that have a counterpart in our worlds. Attributes
 /// stand here too where the compiled model says whether they matter, as `stiffness`: its springs
 /// are listed from there, with what default classes come to.
 constexpr TakenOf kReadInMjcf[] = {

@@ -28,7 +28,7 @@ struct DiscrepancyStanding {
   std::string words;  // "in doubt: mujoco agrees with the model"
 };
 
-/// What both say together: a doubt of either is a doubt, and one who was not asked has no say.
+/// Joins two opinions: a doubt of either is a doubt, and one that was not asked does not count.
 DiscrepancyStanding both_standings(const DiscrepancyStanding& a, const DiscrepancyStanding& b);
 
 /// The standing of a discrepancy about which nobody was asked, with the command that asks.
@@ -43,7 +43,7 @@ DiscrepancyStanding standing_of(const CampaignResult& result, const Discrepancy&
 /// that none of them stands in the headline of a run that has another one.
 std::vector<const Discrepancy*> headline_order(const CampaignResult& result);
 
-/// What a headline calls a discrepancy: "discrepancy, not confirmed", "discrepancy, confirmed",
+/// The name of a discrepancy in a headline: "discrepancy, not confirmed", "discrepancy, confirmed",
 /// "discrepancy in doubt".
 std::string_view headline_word(Standing standing);
 

@@ -68,8 +68,7 @@ double distance_m(const BodyShape& shape, const Eigen::Vector3d& p_B) {
   return (p_S.cwiseAbs() - 0.5 * shape.size_m).cwiseMax(0.0).norm();
 }
 
-/// Of the shapes that the pads reach: those farther from their middle than half the width of the
-/// grip are not between them.
+/// The form of the shapes between the pads: those within half the width of the grip of its middle.
 GrippedForm gripped_form(const BodySpec& body, const Grip& grip) {
   constexpr double kPlay_m = 0.001, kSameHeading_rad = 0.05;
   std::vector<double> headings_rad;  // of upright boxes, each once; turned by half, it is the same
@@ -139,7 +138,7 @@ std::vector<DoubtfulGrip> doubtful_grips(const WorldSpec& spec,
                                 range.heaviest_kg.value_or(body.mass_kg));
     const double most =
         margin(range.firmest_n.value_or(grip->squeeze_n), range.lightest_kg.value_or(body.mass_kg));
-    // What the law does not hold slips in any engine.
+    // A load that Coulomb's law does not hold slips in any engine.
     if (most < 1.0 || (cell->firm_holds && least >= kFirmMargin)) continue;
     out.push_back({body.name, form, cell->step_s, cell->slipped, cell->runs, cell->sound_s});
   }

@@ -11,7 +11,7 @@
 
 namespace parallax::harness {
 
-/// What pads close on, as far as the engines tell it apart.
+/// Forms of gripped loads that the engines hold differently.
 enum class GrippedForm : std::uint8_t {
   kCylinder,
   kRing,   // walls round a hollow, such as `ring` of a scenario makes

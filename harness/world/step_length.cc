@@ -69,7 +69,7 @@ struct Thinnest {
   }
 };
 
-/// Of what moves, and of all that it may meet.
+/// The thinnest shape among the moved bodies and all bodies that they may meet.
 Thinnest thinnest_at(const std::set<std::string>& moved, const WorldLayout& layout) {
   Thinnest thinnest;
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {

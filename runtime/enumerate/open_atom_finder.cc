@@ -21,8 +21,8 @@ bool is_hidden(AtomKind kind) {
 
 Literal as(bool value, const AtomRef& atom) { return value ? atom.literal() : ~atom.literal(); }
 
-/// What tells the trace of a valuation: HoldsAt, Happens and, of a plan, what is performed and what
-/// it returns. None for atoms of which the trace says nothing.
+/// The value that the trace fixes for an atom: HoldsAt, Happens and, with a plan, its performs and
+/// their results. None for atoms that the trace does not mention.
 std::optional<bool> told_value(const Trace& trace, const AtomRef& atom, std::size_t plan_size) {
   if (!atom.time) return std::nullopt;
   const auto time = static_cast<std::size_t>(*atom.time);

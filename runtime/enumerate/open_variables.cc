@@ -53,7 +53,7 @@ std::uint32_t OpenVariables::root_of(std::uint32_t variable) {
   return variable;
 }
 
-/// What is left of the clauses, in their order.
+/// Connected components of the clauses that are not satisfied, in their order.
 std::vector<OpenVariables::Component> OpenVariables::components() {
   std::iota(parents_.begin(), parents_.end(), 0U);
   Codes rest;
@@ -147,7 +147,7 @@ std::optional<std::vector<std::int32_t>> OpenVariables::find(std::span<const Lit
     }
     open.insert(open.end(), known->second.begin(), known->second.end());
   }
-  // What no clause is left of may have any value.
+  // A variable without a remaining clause may have either value.
   for (const auto variable : asked_) {
     const auto place = static_cast<std::size_t>(variable) - 1;
     if (!is_bound[place] && state_.is_open(static_cast<std::uint32_t>(2 * place))) {

@@ -101,7 +101,7 @@ std::vector<std::string> own_meanings(const Range& range) {
               "range level 0 1\nfluent F(level)\n[level,time] HoldsAt(F(level),time).\n"};
 }
 
-/// What can be asked of `m.e`, by any command that takes a model's texts; `n.e` is the same model.
+/// Calls of every command that takes a model's texts, for `m.e`; `n.e` is the same model.
 std::vector<Words> questions() {
   std::vector<Words> out = {
       {"check", "m.e"},
@@ -235,7 +235,7 @@ TEST_CASE("a range of more numbers than there is memory for is refused at its pl
   }
 }
 
-/// What can be asked of a scenario and of the runs of it, in this order. Its world is a model.
+/// Calls about a scenario and then about its runs, in this order. Its world is a model.
 const std::vector<Words> kAboutScenarios = {
     {"check", "two/sticks.yaml"},
     {"traces", "two/sticks.yaml"},

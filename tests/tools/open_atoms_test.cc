@@ -115,7 +115,7 @@ std::optional<std::string> listed(const compiler::Compilation& compilation, Stra
   return format == "json" ? writer.list() : context.text;
 }
 
-/// What our reader takes from a list.
+/// The hidden atoms that the program's reader finds in a list.
 std::vector<Hidden> read_back(const std::string& text, const CompiledModel& model) {
   base::SourceFiles files;
   base::DiagnosticSink sink;

@@ -40,7 +40,7 @@ struct VerifyOptions {
 /// The answer, before it is printed.
 struct Answer {
   std::optional<runtime::Trace> violation;
-  /// What the violation leaves open; none: not asked for, or too hard to tell.
+  /// Atoms that the violation leaves open; none: not asked for, or too hard to tell.
   std::optional<runtime::OpenAtoms> open;
   runtime::Exploration exploration = runtime::Exploration::kStopped;
   std::vector<std::string> bounds;

@@ -1,4 +1,4 @@
-// What a confirmation says of a discrepancy in the headline of reports.
+// The standing of a discrepancy in headlines, after a confirmation.
 
 #include <fmt/format.h>
 
@@ -33,7 +33,7 @@ harness::DiscrepancyStanding standing_of(const Confirmation& confirmation) {
     case ConfirmVerdict::kNotRepeated:
       return {Standing::kInDoubt, "in doubt: the same start and seed do not always show it"};
     case ConfirmVerdict::kSeed:
-      // Of a world that is a model chance is part of what it says.
+      // Chance is part of a world that is a model.
       if (confirmation.world_is_model) {
         return {Standing::kStands,
                 fmt::format("confirmed: the world's model leaves it open, and {}",

@@ -81,8 +81,8 @@ void add_world_facts(const harness::Scenario& scenario, const compiler::LoadOpti
   }
 }
 
-/// What the files hold that an external simulator's command names; its words are a setting of
-/// their own.
+/// Adds the hash of the files that an external simulator's command names. The command's words are
+/// a setting of their own.
 void add_command_files(const std::string& path, const harness::Scenario& scenario,
                        harness::ScenarioSettings& settings) {
   const auto& command = scenario.simulator.command;

@@ -61,7 +61,7 @@ std::string verdict_title(const PageData& page) {
   return page.running ? "Not finished" : "No verdict";
 }
 
-/// What parted model and world, and how that stands.
+/// The discrepancy between model and world, with its standing.
 std::string discrepancy_lead(const PageDiscrepancy& found) {
   auto out = "<p class=\"lead\">" + html_words(found.words) + ".</p>\n";
   auto words = found.standing.words;

@@ -56,7 +56,7 @@ std::set<std::string> words_of(const std::string& text) {
 
 const std::string kTurns = " quat axisangle xyaxes zaxis euler ";
 
-/// What is taken over, by tag.
+/// Attributes that are taken over, by tag.
 const Words kTakenOver = {
     {"mujoco", "model"},
     {"compiler",
@@ -78,7 +78,7 @@ const Words kTakenOver = {
     {"exclude", "name body1 body2"},
 };
 
-/// What an element has to have to be accepted.
+/// Attributes without which an element is refused.
 const Words kNeeded = {
     {"geom", "size='0.1 0.1 0.1'"},
     {"inertial", "pos='0 0 0' mass='1' diaginertia='0.01 0.02 0.025'"},
@@ -112,11 +112,11 @@ const Words kNeeded = {
 /// Attributes of geoms that name what is listed itself.
 const Words kListedByName = {{"material", "materials"}, {"hfield", "elements <hfield> of <asset>"}};
 
-/// What references of other elements name, by attribute.
+/// Names for the references of elements, by attribute.
 const Words kReferences = {{"site", "s"},     {"joint", "j"},      {"tendon", "t"},
                            {"actuator", "m"}, {"objtype", "body"}, {"objname", "a"}};
 
-/// What an element has in it to be accepted.
+/// Children without which an element is refused.
 const Words kInside = {
     {"tuple", "<element objtype='body' objname='a'/>"},
     {"spatial", "<site site='s'/><site site='s2'/>"},
@@ -293,7 +293,7 @@ std::string needed_by(const Row& row) {
   return out;
 }
 
-/// What the world is made of, in words.
+/// The facts of a world, as text.
 std::string facts(const ImportedWorld& world) {
   std::ostringstream out;
   for (const ImportedBody& body : world.bodies) {

@@ -1,4 +1,4 @@
-// What goes farther in a step than a shape is thick is told beforehand.
+// Steps longer than a shape is thick are warned of before the run.
 
 #include <Eigen/Geometry>
 
@@ -75,7 +75,7 @@ TEST_CASE("what counts is the thinnest shape that moves or may be met, and the s
   CHECK(said(replaced(world_with_plate(0.8, 0.0009), "timestep_s: 0.004", "timestep_s: 0.001"),
              kScenario)
             .empty());
-  // What collides with nothing is not met.
+  // Bodies without collisions are not met.
   CHECK(said(replaced(world_with_plate(0.8, 0.0009), "position_m: [0.8",
                       "collides: false, position_m: [0.8"),
              kScenario)

@@ -113,7 +113,7 @@ TEST_CASE("a drawn mass and a given squeeze widen what a grip holds") {
   const auto mass_kg = [](double margin) {
     return 2.0 * kPadFriction * kSqueeze_n / (margin * kEarth_m_s2);
   };
-  // What holds nothing by the law, or five times what it has to, slips for no fault of the solver.
+  // Grips below a margin of 1 slip by the law, and those above 5 did not slip.
   CHECK(at(0.9, {}) == 0);
   CHECK(at(6.0, {}) == 0);
   CHECK(at(0.9, {mass_kg(2.0), mass_kg(0.5), {}, {}}) == 1);
