@@ -16,7 +16,7 @@ constexpr std::size_t kMaxShown = 40;  // lines
 
 using Lines = std::vector<std::string_view>;
 
-struct Edit {
+struct LineEdit {
   char mark;  // ' ', '-' or '+'
   std::string_view line;
 };
@@ -33,8 +33,8 @@ Lines lines_of(std::string_view text) {
 }
 
 /// Every line of both texts once, deleted ones before the added ones.
-std::vector<Edit> edits_between(const Lines& a, const Lines& b) {
-  std::vector<Edit> edits;
+std::vector<LineEdit> edits_between(const Lines& a, const Lines& b) {
+  std::vector<LineEdit> edits;
   std::size_t next = 0;  // in `a`
   const auto keep_until = [&](std::size_t end) {
     for (; next < end; ++next) edits.push_back({' ', a[next]});
@@ -49,7 +49,7 @@ std::vector<Edit> edits_between(const Lines& a, const Lines& b) {
 }
 
 /// Which edits are shown: the differences and their surroundings.
-std::vector<bool> near_differences(const std::vector<Edit>& edits) {
+std::vector<bool> near_differences(const std::vector<LineEdit>& edits) {
   std::vector<bool> near(edits.size(), false);
   for (std::size_t i = 0; i < edits.size(); ++i) {
     if (edits[i].mark == ' ') continue;
@@ -60,7 +60,7 @@ std::vector<bool> near_differences(const std::vector<Edit>& edits) {
   return near;
 }
 
-void append(std::string& out, const Edit& edit) {
+void append(std::string& out, const LineEdit& edit) {
   auto line = edit.line;
   const bool ended = line.ends_with('\n');
   if (ended) line.remove_suffix(1);
