@@ -37,7 +37,7 @@ std::string shown(std::string_view name) {
 }
 
 /// The name that a symbol has here if Lisp calls it `text`.
-std::string folded(const std::string& text) {
+std::string folded_text(const std::string& text) {
   const bool mixed =
       std::any_of(text.begin(), text.end(), [](char c) { return c >= 'a' && c <= 'z'; });
   return mixed ? text : lower(text);
@@ -53,7 +53,7 @@ std::optional<std::string> text_of(const BuiltinCall& c, std::size_t index) {
 }
 
 ValueId symbol_called(const BuiltinCall& c, const std::string& text) {
-  const auto name = folded(text);
+  const auto name = folded_text(text);
   return name == "nil" ? c.values.nil() : c.values.symbol(name);
 }
 
@@ -76,14 +76,14 @@ BuiltinResult intern(const BuiltinCall& c) {
   if (value.kind != ValueKind::kString) return c.wrong(0, "a string");
   const auto package = c.args.size() > 1 ? text_of(c, 1) : std::optional<std::string>("");
   if (!package) return c.wrong(1, "the name of a package");
-  if (lower(*package) == "keyword") return c.values.keyword(folded(value.text));
+  if (lower(*package) == "keyword") return c.values.keyword(folded_text(value.text));
   return symbol_called(c, value.text);
 }
 
 BuiltinResult make_keyword(const BuiltinCall& c) {
   const auto text = text_of(c, 0);
   if (!text) return c.wrong(0, "a string or a symbol");
-  return c.values.keyword(folded(*text));
+  return c.values.keyword(folded_text(*text));
 }
 
 BuiltinResult gensym(const BuiltinCall& c) {

@@ -8,7 +8,7 @@
 namespace parallax::harness {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoFallback = std::numeric_limits<double>::quiet_NaN();
 
 constexpr std::string_view kUnusedPose = "accepted and unused: this robot works along one line";
 constexpr std::string_view kSettle = "rest at the end";
@@ -29,7 +29,7 @@ constexpr ArgumentSpec count(std::string_view name, double fallback, std::string
 }
 constexpr ArgumentSpec any_number(std::string_view name, std::string_view unit,
                                   std::string_view help) {
-  return {name, unit, false, kNone, false, help};
+  return {name, unit, false, kNoFallback, false, help};
 }
 constexpr ArgumentSpec named(std::string_view name, std::string_view what, std::string_view help,
                              bool required = true) {
@@ -53,7 +53,7 @@ constexpr std::array kGoing = {
 
 constexpr std::array kPickingUp = {
     named("object", "body", "the free body to pick up"),
-    ArgumentSpec{"grip_force_n", "n", false, kNone, true,
+    ArgumentSpec{"grip_force_n", "n", false, kNoFallback, true,
                  "squeezing force; unless given, the robot's"},
     number("tool_tolerance_m", "m", 0.012, "the reach axis brakes when so near to the object"),
     ArgumentSpec{"grasp_height_m", "m", false, 0.0, false,
@@ -114,7 +114,7 @@ constexpr std::array kDetect = {
 constexpr std::array kPickUp = {
     named("arm", "arm", "which arm"),
     named("object", "graspable", "the body to pick up"),
-    ArgumentSpec{"effort_n", "n", false, kNone, true,
+    ArgumentSpec{"effort_n", "n", false, kNoFallback, true,
                  "squeezing force; unless given, that of the grasp"},
     number("clearance_m", "m", 0.015, "of each pad before it closes; less where it opens less"),
     number("standoff_m", "m", 0.10, "of the last, straight stretch"),

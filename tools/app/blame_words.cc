@@ -15,7 +15,7 @@ using compiler::AtomKind;
 using compiler::CompiledModel;
 using compiler::Literal;
 using compiler::OriginKind;
-using Kind = Parting::Kind;
+using PartingKind = Parting::Kind;
 using Role = Difference::Role;
 
 std::string joined_with_and(const std::vector<std::string>& parts) {
@@ -54,15 +54,15 @@ class BlameWords {
 
   std::string text(const std::vector<std::size_t>& clauses) const {
     switch (parting_.kind) {
-      case Kind::kFluents:
+      case PartingKind::kFluents:
         return of_fluent(clauses);
-      case Kind::kTogether:
+      case PartingKind::kTogether:
         return together(clauses);
-      case Kind::kOutcome:
+      case PartingKind::kOutcome:
         return outcome(clauses);
-      case Kind::kImpossible:
+      case PartingKind::kImpossible:
         return impossible(clauses);
-      case Kind::kNoState:
+      case PartingKind::kNoState:
         return no_state();
     }
     return {};

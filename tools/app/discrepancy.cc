@@ -16,7 +16,7 @@
 namespace parallax::tools {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 /// A discrepancy as report.json has it.
 struct ReportedDiscrepancy {
@@ -32,8 +32,8 @@ struct ReportedDiscrepancy {
 };
 
 /// None if an entry is not in the format of `parallax run`.
-std::optional<ReportedDiscrepancy> decode(const json& entry) {
-  const auto integer = [](const json& object, const char* name) {
+std::optional<ReportedDiscrepancy> decode(const Json& entry) {
+  const auto integer = [](const Json& object, const char* name) {
     const auto* value = base::json_member(object, name);
     return value == nullptr ? std::nullopt : base::json_as<std::int64_t>(*value);
   };

@@ -24,7 +24,7 @@ using runtime::StepWindows;
 /// repetition is detected.
 constexpr std::int64_t kMostTimepoints = 120;
 
-std::string symbol_of(std::string_view printed) {
+std::string printed_symbol(std::string_view printed) {
   return std::string(printed.substr(0, printed.find('(')));
 }
 
@@ -32,7 +32,7 @@ std::string symbol_of(std::string_view printed) {
 base::Result<std::vector<EventId>> events_of(const std::vector<std::string>& symbols,
                                              const CompiledModel& model, Context& context) {
   std::vector<std::string> known;
-  for (const auto& event : model.events) known.push_back(symbol_of(event.name));
+  for (const auto& event : model.events) known.push_back(printed_symbol(event.name));
   std::vector<EventId> out;
   for (const auto& symbol : symbols) {
     bool found = false;
@@ -74,7 +74,7 @@ void note_unseen(const harness::Scenario& scenario, const CompiledModel& model,
   if (scenario.plan.empty()) return;
   const auto symbols = performable(scenario);
   for (std::uint32_t e = 0; e < model.events.size(); ++e) {
-    if (symbols.contains(symbol_of(model.events[e].name))) options.performed.emplace_back(e);
+    if (symbols.contains(printed_symbol(model.events[e].name))) options.performed.emplace_back(e);
   }
   const auto is_in = [](const std::vector<EventId>& events, EventId event) {
     return std::find(events.begin(), events.end(), event) != events.end();

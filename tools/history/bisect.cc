@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 /// The user's repository, and the scenario's place in it.
 struct Place {
@@ -200,7 +200,7 @@ class Bisection {
 
   static void judge(const base::Captured& run, RevisionVerdict& out) {
     const auto document = base::parse_json(run.out);
-    const auto text = [](const json& object, const char* name) {
+    const auto text = [](const Json& object, const char* name) {
       const auto* value = base::json_member(object, name);
       return value == nullptr ? "" : base::json_as<std::string>(*value).value_or("");
     };
@@ -217,7 +217,7 @@ class Bisection {
     out.input_is_wrong = run.code == 2 || run.code == 3;
     const auto* diagnostics = base::json_member(document, "diagnostics");
     for (const auto& one :
-         diagnostics != nullptr && diagnostics->is_array() ? *diagnostics : json::array()) {
+         diagnostics != nullptr && diagnostics->is_array() ? *diagnostics : Json::array()) {
       if (text(one, "severity") != "error") continue;
       out.words = fmt::format("{}: {}", text(one, "code"), text(one, "message"));
       return;

@@ -18,14 +18,14 @@
 namespace parallax::tools {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::int64_t kFormat = 1;
 constexpr std::size_t kMaxHistoryBytes = std::size_t{256} << 20U;
 
 template <typename T>
-void take(const json& object, const char* name, T& into) {
+void take(const Json& object, const char* name, T& into) {
   const auto* member = base::json_member(object, name);
   if (member == nullptr) return;
   if (auto value = base::json_as<T>(*member)) into = *std::move(value);
@@ -41,7 +41,7 @@ ordered_json rate_json(const MeasuredRate& rate) {
 }
 
 /// None if the counts are malformed.
-std::optional<MeasuredRate> rate_of(const json& object) {
+std::optional<MeasuredRate> rate_of(const Json& object) {
   constexpr std::int64_t kMostRuns = 1'000'000'000;
   MeasuredRate out;
   take(object, "of", out.of);
@@ -59,21 +59,21 @@ std::optional<MeasuredRate> rate_of(const json& object) {
   return out;
 }
 
-std::vector<MeasuredRate> rates_of(const json& list) {
+std::vector<MeasuredRate> rates_of(const Json& list) {
   std::vector<MeasuredRate> out;
-  for (const auto& one : list.is_array() ? list : json::array()) {
+  for (const auto& one : list.is_array() ? list : Json::array()) {
     if (auto rate = rate_of(one)) out.push_back(*std::move(rate));
   }
   return out;
 }
 
-double wall_of(const json& object) {
+double wall_of(const Json& object) {
   double wall_s = 0.0;
   if (const auto* timing = base::json_member(object, "timing")) take(*timing, "wall_s", wall_s);
   return wall_s;
 }
 
-HistoryCase case_of(const json& object) {
+HistoryCase case_of(const Json& object) {
   HistoryCase out;
   take(object, "outcome", out.outcome);
   take(object, "verdict", out.verdict);
@@ -99,7 +99,7 @@ std::optional<HistoryLine> decode(std::string_view text) {
   take(object, "program", out.program);
   out.wall_s = wall_of(object);
   const auto* paths = base::json_member(object, "paths");
-  for (const auto& one : paths != nullptr && paths->is_array() ? *paths : json::array()) {
+  for (const auto& one : paths != nullptr && paths->is_array() ? *paths : Json::array()) {
     if (one.is_string()) out.paths.push_back(one.get<std::string>());
   }
   for (const auto& [name, value] : cases->items()) out.cases.emplace(name, case_of(value));
