@@ -11,7 +11,7 @@
 namespace parallax::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 /// Number of fluents and plan steps that are spelled out in the text.
 constexpr std::size_t kMostShown = 8;
@@ -79,12 +79,12 @@ std::string first_text(const MonitorResult& result) {
   return fmt::format("{}: {}\n", place_text(result), result.undecided_because);
 }
 
-Json value_json(const harness::Value& value) {
-  return std::visit([](const auto& plain) { return Json(plain); }, value);
+OrderedJson value_json(const harness::Value& value) {
+  return std::visit([](const auto& plain) { return OrderedJson(plain); }, value);
 }
 
-Json first_json(const MonitorResult& result) {
-  Json out = Json::object();
+OrderedJson first_json(const MonitorResult& result) {
+  OrderedJson out = OrderedJson::object();
   const auto& place = *result.first;
   if (place.line > 0) out["line"] = place.line;
   out["t"] = place.t;
@@ -100,25 +100,25 @@ Json first_json(const MonitorResult& result) {
     out["expected"] = refusal.expected;
     out["plan_may_be_over"] = refusal.plan_is_over;
   }
-  out["fluents"] = Json::array();
+  out["fluents"] = OrderedJson::array();
   for (const auto& fluent : refusal.fluents) {
-    Json variables = Json::object();
+    OrderedJson variables = OrderedJson::object();
     for (const auto& [name, value] : fluent.variables) variables[name] = value_json(value);
-    Json entry{{"fluent", fluent.fluent}};
-    entry["observed"] = fluent.neither ? Json("neither") : Json(fluent.observed);
+    OrderedJson entry{{"fluent", fluent.fluent}};
+    entry["observed"] = fluent.neither ? OrderedJson("neither") : OrderedJson(fluent.observed);
     entry["variables"] = std::move(variables);
     out["fluents"].push_back(std::move(entry));
   }
   return out;
 }
 
-Json fields(const MonitorResult& result) {
-  Json out{{"verdict", to_string(result.verdict)},
-           {"observations", result.observations},
-           {"compared", result.compared},
-           {"under_way", result.under_way},
-           {"events", result.events}};
-  out["states"] = Json{{"most", result.most_states}};
+OrderedJson fields(const MonitorResult& result) {
+  OrderedJson out{{"verdict", to_string(result.verdict)},
+                  {"observations", result.observations},
+                  {"compared", result.compared},
+                  {"under_way", result.under_way},
+                  {"events", result.events}};
+  out["states"] = OrderedJson{{"most", result.most_states}};
   if (result.states) out["states"]["last"] = *result.states;
   if (result.verdict == MonitorVerdict::kUndecided) out["because"] = result.undecided_because;
   if (result.first) out["first"] = first_json(result);
@@ -181,27 +181,27 @@ std::string monitor_text(const std::vector<MonitorResult>& runs) {
 }
 
 std::string monitor_json(const MonitorResult& result, const std::string& scenario) {
-  Json out{{"status", result.failed ? "error" : "ok"},
-           {"scenario", base::printable(scenario)},
-           {"log", base::printable(result.log)}};
+  OrderedJson out{{"status", result.failed ? "error" : "ok"},
+                  {"scenario", base::printable(scenario)},
+                  {"log", base::printable(result.log)}};
   out.update(fields(result));
   out["unreported"] = result.unreported;
-  out["unended"] = Json::array();
+  out["unended"] = OrderedJson::array();
   for (const auto& action : result.unended) {
     out["unended"].push_back(
-        Json{{"event", action.event}, {"line", action.place.line}, {"t", action.place.t}});
+        OrderedJson{{"event", action.event}, {"line", action.place.line}, {"t", action.place.t}});
   }
-  out["timing"] = Json{{"wall_s", result.wall_s}};
+  out["timing"] = OrderedJson{{"wall_s", result.wall_s}};
   return base::json_text(out) + "\n";
 }
 
 std::string monitor_json(const std::vector<MonitorResult>& runs, const std::string& scenario) {
-  Json out{{"status", "ok"},
-           {"scenario", base::printable(scenario)},
-           {"verdict", to_string(verdict_of(runs))},
-           {"runs", Json::array()}};
+  OrderedJson out{{"status", "ok"},
+                  {"scenario", base::printable(scenario)},
+                  {"verdict", to_string(verdict_of(runs))},
+                  {"runs", OrderedJson::array()}};
   for (const auto& run : runs) {
-    Json entry{{"sample", run.log}};
+    OrderedJson entry{{"sample", run.log}};
     entry.update(fields(run));
     out["runs"].push_back(std::move(entry));
   }

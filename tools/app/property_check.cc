@@ -8,7 +8,6 @@
 #include "tools/app/trace_check.h"
 
 namespace parallax::tools {
-namespace {}  // namespace
 
 std::optional<PropertyBreak> PropertyCheck::broken(const runtime::Trace& trace) {
   compiler::ReferenceLimits limits;
