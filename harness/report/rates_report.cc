@@ -18,10 +18,10 @@ using OrderedJson = nlohmann::ordered_json;
 
 OrderedJson rate_object(const CauseRate& rate) {
   OrderedJson object = {{"cause", rate.cause},
-                 {"count", rate.count},
-                 {"rate", rate.rate},
-                 {"lower", rate.lower},
-                 {"upper", rate.upper}};
+                        {"count", rate.count},
+                        {"rate", rate.rate},
+                        {"lower", rate.lower},
+                        {"upper", rate.upper}};
   if (rate.example > 0) object["example"] = rate.example;
   if (!rate.reason.empty()) object["reason"] = rate.reason;
   if (!rate.start.empty()) object["start"] = state_json<OrderedJson>(rate.start);
@@ -97,13 +97,13 @@ std::string_view interval_name(const RatesResult& result) {
 
 std::string rates_json(const RatesResult& result) {
   OrderedJson document = {{"status", "ok"},
-                   {"scenario", result.scenario},
-                   {"seed", result.seed},
-                   {"confidence", result.confidence},
-                   {"intervals", result.fixed_runs ? "clopper-pearson" : "anytime"},
-                   {"compare", to_string(result.comparison)},
-                   {"complete", result.complete},
-                   {"traces", OrderedJson::array()}};
+                          {"scenario", result.scenario},
+                          {"seed", result.seed},
+                          {"confidence", result.confidence},
+                          {"intervals", result.fixed_runs ? "clopper-pearson" : "anytime"},
+                          {"compare", to_string(result.comparison)},
+                          {"complete", result.complete},
+                          {"traces", OrderedJson::array()}};
   for (const TraceRates& trace : result.traces) {
     OrderedJson causes = OrderedJson::array();
     for (const CauseRate& rate : trace.causes) causes.push_back(rate_object(rate));

@@ -16,7 +16,9 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-std::string text_of(const OrderedJson& json, int indent) { return base::json_text(json, indent) + '\n'; }
+std::string text_of(const OrderedJson& json, int indent) {
+  return base::json_text(json, indent) + '\n';
+}
 
 /// {"box.x": [1, 2], "box.y": 0}
 OrderedJson json_of(const std::vector<SampledDimension>& dimensions) {
@@ -90,13 +92,13 @@ OrderedJson json_of(const std::vector<CoverItem>& items) {
 
 OrderedJson json_of(const CoverResult& cover) {
   OrderedJson out = {{"end", to_string(cover.end)},
-              {"items", cover.items},
-              {"shown", cover.items - std::ssize(cover.left)},
-              {"executions", cover.drawn},
-              {"lost", cover.lost},
-              {"confidence", cover.confidence},
-              {"bound", cover.bound},
-              {"epsilon", cover.epsilon}};
+                     {"items", cover.items},
+                     {"shown", cover.items - std::ssize(cover.left)},
+                     {"executions", cover.drawn},
+                     {"lost", cover.lost},
+                     {"confidence", cover.confidence},
+                     {"bound", cover.bound},
+                     {"epsilon", cover.epsilon}};
   out["left"] = json_of(cover.left);
   out["impossible"] = json_of(cover.unreachable);
   return out;
@@ -104,12 +106,12 @@ OrderedJson json_of(const CoverResult& cover) {
 
 OrderedJson json_of(const SearchResult& search) {
   OrderedJson out = {{"strategy", to_string(search.spec.strategy)},
-              {"asked", search.spec.runs},
-              {"simulations", search.runs},
-              {"invalid", search.invalid},
-              {"lost", search.lost},
-              {"found", search.found},
-              {"contradicting", search.contradicting}};
+                     {"asked", search.spec.runs},
+                     {"simulations", search.runs},
+                     {"invalid", search.invalid},
+                     {"lost", search.lost},
+                     {"found", search.found},
+                     {"contradicting", search.contradicting}};
   if (search.nearest) {
     out["nearest"] = {
         {"sample", *search.nearest}, {"margin", search.margin}, {"part", search.part}};
@@ -127,21 +129,21 @@ OrderedJson json_of(const TraceResult& result, const std::vector<ComparedFluents
     sources.push_back(std::move(event["source"]));
   }
   OrderedJson out = {{"trace", trace.number},
-              {"verdict", to_string(result.verdict)},
-              {"events", std::move(events)},
-              {"sources", std::move(sources)},
-              {"initial_state", holds_json<OrderedJson>(trace, 0)},
-              {"start_region", json_of(result.start_region)},
-              {"start_shares", json_of(result.start_shares)},
-              {"not_compared", ignored_names(compared)},
-              {"simulations", result.simulations},
-              {"guided", result.search ? result.search->runs : 0},
-              {"clean", result.clean},
-              {"admitted", result.admitted},
-              {"lost", result.lost},
-              {"retried", result.retried},
-              {"rejected", result.rejected},
-              {"strayed", result.strayed}};
+                     {"verdict", to_string(result.verdict)},
+                     {"events", std::move(events)},
+                     {"sources", std::move(sources)},
+                     {"initial_state", holds_json<OrderedJson>(trace, 0)},
+                     {"start_region", json_of(result.start_region)},
+                     {"start_shares", json_of(result.start_shares)},
+                     {"not_compared", ignored_names(compared)},
+                     {"simulations", result.simulations},
+                     {"guided", result.search ? result.search->runs : 0},
+                     {"clean", result.clean},
+                     {"admitted", result.admitted},
+                     {"lost", result.lost},
+                     {"retried", result.retried},
+                     {"rejected", result.rejected},
+                     {"strayed", result.strayed}};
   for (const auto& lost : result.losses) {
     out["losses"].push_back(
         {{"reason", lost.kind}, {"count", lost.count}, {"example", lost.example}});
@@ -233,23 +235,23 @@ OrderedJson json_of(const CampaignResult& result, const Discrepancy& found) {
                         {"sim_time_s", outcome.sim_time_s}});
   }
   OrderedJson out = {{"trace", found.trace},
-              {"sample", found.sample},
-              {"seed", found.seed},
-              {"kind", to_string(found.kind)},
-              {"first_divergence", found.first_divergence},
-              {"cause",
-               {{"text", found.cause.text},
-                {"reason", found.cause.reason},
-                {"event", found.cause.event},
-                {"fluents", found.cause.fluents}}},
-              {"first", json_of(found.first)},
-              {"fluents", json_of(found.fluents)},
-              {"repeated", word(found.confirmation)},
-              {"start", state_json<OrderedJson>(found.record.initial)},
-              {"end", state_json<OrderedJson>(found.end)},
-              {"outcomes", std::move(outcomes)},
-              {"words", discrepancy_sentence(result, found)},
-              {"replay", replay_command(result.replay_folder, found)}};
+                     {"sample", found.sample},
+                     {"seed", found.seed},
+                     {"kind", to_string(found.kind)},
+                     {"first_divergence", found.first_divergence},
+                     {"cause",
+                      {{"text", found.cause.text},
+                       {"reason", found.cause.reason},
+                       {"event", found.cause.event},
+                       {"fluents", found.cause.fluents}}},
+                     {"first", json_of(found.first)},
+                     {"fluents", json_of(found.fluents)},
+                     {"repeated", word(found.confirmation)},
+                     {"start", state_json<OrderedJson>(found.record.initial)},
+                     {"end", state_json<OrderedJson>(found.end)},
+                     {"outcomes", std::move(outcomes)},
+                     {"words", discrepancy_sentence(result, found)},
+                     {"replay", replay_command(result.replay_folder, found)}};
   const auto standing = standing_of(result, found);
   out["standing"] = {{"is", to_string(standing.is)}, {"words", standing.words}};
   if (found.path) add_path(found, out);
@@ -258,12 +260,12 @@ OrderedJson json_of(const CampaignResult& result, const Discrepancy& found) {
 
 OrderedJson json_of(const CampaignResult& result, bool with_timing) {
   OrderedJson out = {{"status", result.failed ? "error" : "ok"},
-              {"scenario", result.scenario},
-              {"seed", result.seed},
-              {"verdict", to_string(result.verdict)},
-              {"iterations", result.traces.size()},
-              {"simulations", result.simulations},
-              {"tool_version", result.tool_version}};
+                     {"scenario", result.scenario},
+                     {"seed", result.seed},
+                     {"verdict", to_string(result.verdict)},
+                     {"iterations", result.traces.size()},
+                     {"simulations", result.simulations},
+                     {"tool_version", result.tool_version}};
   out["simulator"] = {{"name", result.simulator.name},
                       {"version", result.simulator.version},
                       {"determinism", result.simulator.determinism},
@@ -334,11 +336,11 @@ base::Status write_report(const CampaignResult& result, const std::filesystem::p
 std::string replay_json(const ReplayResult& result) {
   static constexpr std::string_view kOutcomes[] = {"identical", "differs", "cannot"};
   OrderedJson out = {{"status", "ok"},
-              {"sample", fmt::format("{}.{}", result.id.trace, result.id.sample)},
-              {"seed", result.seed},
-              {"outcome", kOutcomes[static_cast<std::size_t>(result.outcome)]},
-              {"timepoints", result.timepoints},
-              {"digest", result.digest}};
+                     {"sample", fmt::format("{}.{}", result.id.trace, result.id.sample)},
+                     {"seed", result.seed},
+                     {"outcome", kOutcomes[static_cast<std::size_t>(result.outcome)]},
+                     {"timepoints", result.timepoints},
+                     {"digest", result.digest}};
   if (!result.reason.empty()) out["reason"] = result.reason;
   if (const auto& difference = result.difference) {
     out["difference"] = {{"timepoint", difference->timepoint},

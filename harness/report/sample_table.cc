@@ -75,17 +75,17 @@ std::string samples_jsonl(const std::vector<SampleRow>& rows) {
   std::string out;
   for (const auto& row : rows) {
     OrderedJson object = {{"trace", row.trace},
-                   {"sample", row.sample},
-                   {"seed", row.seed},
-                   {"start", row.drawn ? "drawn" : "chosen"},
-                   {"rejected", row.rejected},
-                   {"retries", row.retries},
-                   {"outcome", row.outcome},
-                   {"event", row.event ? OrderedJson(*row.event) : OrderedJson()},
-                   {"cause", row.cause.empty() ? OrderedJson() : OrderedJson(row.cause)},
-                   {"reason", row.reason.empty() ? OrderedJson() : OrderedJson(row.reason)},
-                   {"sim_time_s", row.sim_time_s},
-                   {"state", state_json<OrderedJson>(row.start)}};
+                          {"sample", row.sample},
+                          {"seed", row.seed},
+                          {"start", row.drawn ? "drawn" : "chosen"},
+                          {"rejected", row.rejected},
+                          {"retries", row.retries},
+                          {"outcome", row.outcome},
+                          {"event", row.event ? OrderedJson(*row.event) : OrderedJson()},
+                          {"cause", row.cause.empty() ? OrderedJson() : OrderedJson(row.cause)},
+                          {"reason", row.reason.empty() ? OrderedJson() : OrderedJson(row.reason)},
+                          {"sim_time_s", row.sim_time_s},
+                          {"state", state_json<OrderedJson>(row.start)}};
     auto margins = OrderedJson::array();
     for (std::size_t i = 0; i < row.margins.size(); ++i) {
       if (row.margins[i].empty()) continue;

@@ -62,7 +62,9 @@ std::string to_text(const FactReport& report, FactKind kind, const std::string& 
 
 std::string to_json(const FactReport& report, FactKind kind) {
   const auto difference = of_kind(report, kind);
-  OrderedJson out = {{"removed", OrderedJson::array()}, {"added", OrderedJson::array()}, {"changed", OrderedJson::array()}};
+  OrderedJson out = {{"removed", OrderedJson::array()},
+                     {"added", OrderedJson::array()},
+                     {"changed", OrderedJson::array()}};
   for (const auto i : difference.removed) out["removed"].push_back(json_of(report.old_facts[i]));
   for (const auto i : difference.added) out["added"].push_back(json_of(report.new_facts[i]));
   for (const auto& [i, j] : difference.changed) {
@@ -224,7 +226,8 @@ OrderedJson witness_json(const SideView& side, bool lost) {
   out["edits"] = OrderedJson::array();
   for (const auto& edit : *side.edits) {
     OrderedJson kept = edit.kept ? json_of(side.kept.facts[*edit.kept]) : OrderedJson(nullptr);
-    OrderedJson refused = edit.refused ? json_of(side.refused.facts[*edit.refused]) : OrderedJson(nullptr);
+    OrderedJson refused =
+        edit.refused ? json_of(side.refused.facts[*edit.refused]) : OrderedJson(nullptr);
     out["edits"].push_back(lost ? OrderedJson{{"old", kept}, {"new", refused}}
                                 : OrderedJson{{"old", refused}, {"new", kept}});
   }
@@ -289,12 +292,12 @@ std::string traces_json(const ModelDifference& difference) {
   if (!difference.traces) return "null";
   const auto& traces = *difference.traces;
   OrderedJson out = {{"horizon", traces.horizon},
-              {"shared_fluents", traces.vocabulary.fluents},
-              {"shared_events", traces.vocabulary.events},
-              {"only_old", traces.vocabulary.only_first},
-              {"only_new", traces.vocabulary.only_second},
-              {"old", json_of(traces.first_count)},
-              {"new", json_of(traces.second_count)}};
+                     {"shared_fluents", traces.vocabulary.fluents},
+                     {"shared_events", traces.vocabulary.events},
+                     {"only_old", traces.vocabulary.only_first},
+                     {"only_new", traces.vocabulary.only_second},
+                     {"old", json_of(traces.first_count)},
+                     {"new", json_of(traces.second_count)}};
   out["lost"] = side_json(view(difference, true), true);
   out["gained"] = side_json(view(difference, false), false);
   return base::json_text(out);

@@ -14,10 +14,10 @@ namespace parallax::tools {
 
 namespace {
 
-constexpr double kGoodCondition = 30.0;     // shorter than this, no further stage is asked
-constexpr std::size_t kBeam = 24;           // conditions that are made longer
+constexpr double kGoodCondition = 30.0;         // shorter than this, no further stage is asked
+constexpr std::size_t kBeam = 24;               // conditions that are made longer
 constexpr std::size_t kMostRuleConditions = 3;  // of one rule
-constexpr std::size_t kMostNarrower = 8;    // rules that are proposed instead of one
+constexpr std::size_t kMostNarrower = 8;        // rules that are proposed instead of one
 
 struct Counts {
   double held = 0, failed = 0;

@@ -12,8 +12,8 @@ namespace parallax::tools {
 
 namespace {
 
-constexpr int kCheapCondition = 30;          // cheaper than this, no further stage is asked
-constexpr std::size_t kMostUnits = 3;        // of one rule
+constexpr int kCheapCondition = 30;                // cheaper than this, no further stage is asked
+constexpr std::size_t kMostUnits = 3;              // of one rule
 constexpr std::size_t kMostSearchSteps = 200'000;  // of one search
 constexpr int kNone = std::numeric_limits<int>::max();
 

@@ -55,14 +55,14 @@ std::optional<std::pair<std::string, Judgement>> read_line(const std::string& li
 
 std::string line_of(const Mutant& mutant, const Judgement& judgement) {
   return base::json_text(OrderedJson{{"mutant", key_of(mutant)},
-                              {"outcome", to_string(judgement.outcome)},
-                              {"by", judgement.by},
-                              {"why", judgement.why},
-                              {"told_in", judgement.told_in},
-                              {"gained", judgement.gained},
-                              {"excluded_by", judgement.excluded_by},
-                              {"trace", judgement.trace},
-                              {"trace_json", judgement.trace_json}}) +
+                                     {"outcome", to_string(judgement.outcome)},
+                                     {"by", judgement.by},
+                                     {"why", judgement.why},
+                                     {"told_in", judgement.told_in},
+                                     {"gained", judgement.gained},
+                                     {"excluded_by", judgement.excluded_by},
+                                     {"trace", judgement.trace},
+                                     {"trace_json", judgement.trace_json}}) +
          '\n';
 }
 

@@ -77,10 +77,10 @@ std::string readers(const MutationScore& score) {
 
 OrderedJson json_of(const Mutant& mutant, const Judgement& judgement) {
   OrderedJson out = {{"file", mutant.file},
-              {"line", mutant.line},
-              {"kind", mutant.kind},
-              {"words", mutant.words},
-              {"outcome", to_string(judgement.outcome)}};
+                     {"line", mutant.line},
+                     {"kind", mutant.kind},
+                     {"words", mutant.words},
+                     {"outcome", to_string(judgement.outcome)}};
   if (!judgement.by.empty()) out["noticed_by"] = judgement.by;
   if (!judgement.why.empty()) out["why"] = judgement.why;
   if (judgement.outcome != MutantOutcome::kUnnoticed) return out;
