@@ -1,3 +1,15 @@
+// The fewest deleted and added lines between two texts (Myers 1986, section 4).
+//
+// Common lines at the front and at the back are cut off. A diagonal d is the set of places x - y
+// = d in the grid of both texts. For 0, 1, 2, ... edits the search keeps the furthest x on each
+// diagonal that so many edits reach; a step takes an edit from a neighbour diagonal and then
+// follows equal lines for nothing. The ends are kept for each number of edits, so that the way
+// can be walked back from the end. Stretches of changes then slide down over equal lines, which
+// makes the choice between equally short answers unique.
+//
+// Cost: O((N + M) D) time and O(D^2) space for D edits; beyond 3000 edits the middle counts as
+// one change.
+
 #include "compiler/base/line_diff.h"
 
 #include <algorithm>

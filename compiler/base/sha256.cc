@@ -1,3 +1,10 @@
+// SHA-256 (FIPS 180-4) of a text in memory.
+//
+// The text is padded with a one bit, zeros and its length in bits to whole blocks of 64 bytes.
+// For each block 16 words are expanded to 64 and mixed into eight words of state in 64 rounds.
+// It serves cache keys and fingerprints; speed is of no concern, and the padding makes a copy of
+// the text. Linear in the text.
+
 #include "compiler/base/sha256.h"
 
 #include <bit>

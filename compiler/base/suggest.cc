@@ -1,3 +1,13 @@
+// The name that somebody may have meant: the nearest by edit distance.
+//
+// The distance counts insertions, deletions, substitutions and exchanges of neighbours (Damerau
+// 1964), by the usual table over prefixes, of which three rows are kept; letters that were
+// exchanged are not edited again. A candidate is near if the distance is within the limit and at
+// most half of the longer word; the first of the nearest is taken. Candidates whose length
+// differs by more than the limit are not compared.
+//
+// Cost: the product of both lengths for each candidate compared.
+
 #include "compiler/base/suggest.h"
 
 #include <algorithm>

@@ -1,3 +1,16 @@
+// Clauses from a graph of formulas, with auxiliaries for shared parts (Plaisted and Greenbaum
+// 1986).
+//
+// Conjunctions at the top are split, a disjunction becomes one clause, and a part below it
+// becomes an auxiliary. The auxiliary is defined only in the polarity in which it is used, each
+// polarity once, so the number of clauses is linear in the graph. Formulas are made of negations
+// and conjunctions only. A constraint that holds at every timepoint is encoded once, at
+// timepoint 0: its auxiliaries move with it, except those of parts that mention no timepoint,
+// which are the same at all.
+//
+// A part needs the latest timepoint that its atoms mention; nodes are made after their children,
+// so one pass in order of ids finds all of these. Cost: linear in nodes and edges.
+
 #include "compiler/cnf/clause_builder.h"
 
 #include <algorithm>

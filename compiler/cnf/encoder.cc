@@ -1,3 +1,15 @@
+// The passes from constraints to numbered clauses; the table at the end lists them in order.
+//
+// Clauses are made over names first (clause_builder.cc) and get their variables afterwards.
+// Every name gets a hash from its text and every auxiliary one from the structure of its
+// formula, independent of the order in which formulas were built. What exists at each timepoint
+// gets a slot, states before steps; the rest gets a fixed place (slot_table.cc). The variable of
+// a slot at timepoint t is base + t * stride + slot, so a section of clauses that holds at every
+// timepoint is its first copy and a number. An edit of the model therefore changes few numbers
+// of an artifact.
+//
+// Cost: linear in the formula graph and in the clauses written, and n log n in the names.
+
 #include "compiler/cnf/encoder.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,16 @@
+// One text for all ways of writing a formula that differ in layout, names and order only.
+//
+// The tree is built without brackets, nested connectives and quantifiers of one kind being one
+// node. Operands of commutative operators are sorted by their texts. These contain names of
+// bound variables, which must not matter: a variable is therefore first told apart by the text
+// of the whole formula in which it alone is marked, all others being called by their sort; the
+// rank of that text is its name while operands are sorted. In the end variables are numbered in
+// order of occurrence. Variables that the marks do not tell apart keep the order of the text, as
+// the general problem is graph isomorphism.
+//
+// Cost: the text is written once for each variable, so size * depth * variables; beyond a limit
+// operands keep their order.
+
 #include "compiler/compare/canonical_formula.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// Facts of plans and binding tables, for comparison, and the edits between two forms of a plan.
+//
+// A fact is a form in canonical print with its name as key; another one tells the order of the
+// forms. Edits are found from the outside in. Lists with equal heads are aligned by the longest
+// common subsequence of their children (Wagner and Fischer 1974); between those that stay, data
+// that stand unchanged inside a new one are a wrap (or an unwrapping), other data are compared
+// in pairs if both sides have as many, and otherwise are removed and added. Lists with different
+// heads are replaced as a whole.
+//
+// Cost: the product of two lists' lengths times the size of their texts. Products above a limit
+// are not aligned, and the search for wraps ends after a limited number of steps.
+
 #include "compiler/compare/plan_facts.h"
 
 #include <algorithm>

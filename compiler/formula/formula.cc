@@ -1,3 +1,16 @@
+// Formulas as a graph in which equal ones are stored once (hash consing).
+//
+// The only connective is And, of any number of parts; an id is a node and a sign, so a negation
+// costs nothing and Or is a negated And (as in and-inverter graphs). A conjunction is flattened,
+// sorted and freed of repetitions and constants; with a formula and its complement it is false,
+// unless the store keeps complements. It is then looked up in a table with linear probing, so
+// formulas that are equal after these steps have equal ids and can be compared as numbers.
+// Evaluation, rewriting and printing walk the graph on stacks of their own, so that deep
+// formulas need no recursion.
+//
+// Cost: n log n for a conjunction of n parts. A walk is linear in the graph, but a rewritten
+// part is flattened anew.
+
 #include "compiler/formula/formula.h"
 
 #include <algorithm>

@@ -1,3 +1,18 @@
+// Predicate completion over ground formulas, pointwise (Lifschitz 1986).
+//
+// An axiom is noted while it is grounded: for each completed atom p that a conjunct G mentions
+// positively, !G[p := false] is one reason for p. At the end every atom of a completed predicate
+// implies the disjunction of its reasons; an atom without a reason is false. For axioms `body ->
+// P(..)` this is predicate completion (Mueller 2006, Theorem 2.1); for a disjunction of
+// completed events it makes them exclusive. Definitions over effects (`ECCausal`, `Clipped`)
+// give no reasons.
+//
+// Reasons that hold at every timepoint are kept once, at timepoint 0. Where an atom has no other
+// reasons its completion is written once for all timepoints, else timepoint by timepoint.
+//
+// Cost: one substitution into a conjunct for each completed atom that is positive in it, and one
+// implication for each atom or, without a template, for each atom and timepoint.
+
 #include "compiler/ground/completion.h"
 
 #include <algorithm>

@@ -1,3 +1,16 @@
+// Effect axioms whose conditions mention effects (Mueller 2006, section 6.4.1).
+//
+// The effects are the least ones that all effect axioms admit. While the axioms are grounded
+// each effect that a condition mentions is an atom, an unknown of its own; afterwards the
+// unknown is defined as the disjunction of the conditions that bring the effect about, and the
+// least solution (least_fixpoint.cc) takes the place of the atoms, so that rows are rows as all
+// others. A cycle through a negation shows in these atoms because formulas are not simplified by
+// what they say of them. With joins, possible effects are found in rounds: each grounds the
+// axioms against the effects known to be possible before, until a round finds no more.
+//
+// If every effect means the same at all timepoints, the system is solved for timepoint 0 alone.
+// Cost: the rounds' groundings, and the fixpoint, whose new formulas are limited.
+
 #include "compiler/ground/effect_constraints.h"
 
 #include <algorithm>

@@ -1,3 +1,18 @@
+// Effect axioms as rows, and the frame problem over the rows (DEC3 to DEC12 of Mueller 2006).
+//
+// A row says that an event under a condition initiates, terminates or releases a fluent.
+// Circumscription makes Initiates, Terminates and Releases the disjunction of their rows, so
+// these predicates never become atoms, and the frame axioms of a fluent mention only events that
+// can touch it. An axiom that says the same at every timepoint gives rows once, at timepoint 0;
+// if all rows of a fluent are such, its frame axioms are written once as well.
+//
+// Trajectories run from the event that starts their fluent to the first one that stops it. One
+// auxiliary for each pair of timepoints means "still running", defined by the one before, so no
+// clause grows with the distance.
+//
+// Cost: linear in the rows, times the horizon for fluents without a template; quadratic in the
+// horizon for trajectories.
+
 #include "compiler/ground/effects.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// Atoms that always agree, or never do.
+//
+// A HoldsAt or ReleasedAt atom is described by its value at 0 and, for each event, by the
+// condition under which the event makes it true and the one under which it makes it false. Two
+// atoms with inertia and the same description agree at every timepoint, by induction; an atom
+// that is true at 0 is described by its negation. (A thing's place is released exactly while the
+// thing is carried.) Descriptions are compared as formulas of the store, where equal formulas
+// have equal ids, so what is equal for deeper reasons is not found. Each atom is declared equal
+// to the first one with its description, at every timepoint.
+//
+// Cost: linear in the effect rows but for the look-ups in one sorted table.
+
 #include "compiler/ground/equal_bits.h"
 
 #include <initializer_list>

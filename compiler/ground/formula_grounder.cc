@@ -1,3 +1,18 @@
+// Expands a typed formula into a propositional one: connectives part by part, quantifiers by
+// joins.
+//
+// Atoms and comparisons are evaluated under the values that variables have. They may name
+// something that does not exist (a timepoint beyond the horizon, an event at the last one);
+// connectives pass that on, and the innermost quantifier leaves the instance out. The instances
+// of a quantifier come from a plan of filters, equations and look-ups in tables of the atoms
+// that may be true (instance_plan.cc, instance_search.cc). An assignment that no join yields
+// makes a conjunct false or names nothing, so it says nothing. If no instance that was yielded
+// exists, the product of the sorts is walked until one exists: that tells an empty quantifier
+// from one that says nothing itself. An instance that decides ends its quantifier.
+//
+// Cost: a budget counts the rows and the instances. A bare product beyond it, or an estimate a
+// thousand times beyond it, is refused before it is begun.
+
 #include "compiler/ground/formula_grounder.h"
 
 #include <algorithm>

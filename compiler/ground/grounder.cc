@@ -1,3 +1,17 @@
+// The passes from a typed model to ground constraints; the table at the end lists them in order.
+//
+// Axioms are grounded in the order in which knowledge grows: those without time, those about
+// single timepoints, the narrative with the states that it leads through, the effects of all
+// other events, and then the rest, joined over the atoms that are still possible. Each pass
+// makes the joins of later ones smaller. An axiom with one universal time variable is grounded
+// once, at its earliest timepoint, and required at every one; it is expanded instead where it
+// binds only when a scheduled event happens, or where a quantifier in it is empty. While an
+// axiom that mentions effects is noted for completion its effects are opaque atoms. An axiom
+// that is false is an error only if it is false without what is known of the model, so it is
+// grounded once more with all atoms possible.
+//
+// Cost: that of the passes, each described in its file.
+
 #include "compiler/ground/grounder.h"
 
 #include <algorithm>

@@ -1,3 +1,16 @@
+// Order in which the variables of a quantified formula are bound, as in the plan of a database
+// join.
+//
+// The planner is greedy. Conjuncts whose variables are all bound become filters at once. Then an
+// equation with one side bound gives the variables of the other side. If variables are still
+// open, the table with the fewest expected rows for each look-up is matched; a sort is
+// enumerated, the smallest first, only where no table helps. Expected rows assume that a column
+// of a table with n rows has sqrt(n) different values. The product of all steps' fan-outs is the
+// estimate by which the grounder refuses a formula before it begins; a plan of enumerations
+// alone is a bare product of sorts.
+//
+// Cost: quadratic in conjuncts and variables.
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -173,7 +186,7 @@ class Planner {
     return Candidate{i, {}, fan_out(*table, columns)};
   }
 
-  /// Rows per look-up, as if the values of a column were spread evenly over its sort.
+  /// Rows per look-up, as if each column of n rows had sqrt(n) different values, evenly spread.
   double fan_out(const GroundTable& table, const std::vector<TermId>& columns) const {
     double rows = static_cast<double>(table.size());
     for (const auto column : columns) {

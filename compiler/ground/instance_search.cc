@@ -1,3 +1,15 @@
+// Runs the plan of a join (instance_plan.cc) by backtracking.
+//
+// Steps are taken in the plan's order. A filter or an equation is tested in passing; a table or
+// a sort opens one level of recursion for each row or element. Bound variables are on a trail
+// and are unbound on the way back. The rows of a table are found by a hash index on the columns
+// that are bound; hashes may collide, so each row is matched against the patterns all the same.
+// Assignments that some conjunct makes false are never completed; those that come out are sorted
+// and each is kept once, so the result does not depend on the order of the joins.
+//
+// Cost: each row looked at and each element tried is charged to the grounder's budget; then n
+// log n for n assignments that do not come out in order.
+
 #include "compiler/ground/instance_search.h"
 
 #include <algorithm>

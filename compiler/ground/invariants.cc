@@ -1,3 +1,19 @@
+// Groups of fluents of which at most one, or exactly one, is true (mutex groups, Helmert 2009).
+//
+// Candidates are the instances of a fluent symbol that differ in one argument. That at most one
+// of them holds is shown by induction over time, without a solver. At timepoint 0 the values of
+// all of them have to be stated. In a step, every row that initiates one of them has to find
+// each other one false, or the same event terminates it; and no two rows that initiate different
+// members can take effect together: their events exclude one another, or their facts contradict
+// each other, or one terminates what the other initiates. Exactly one: an event that terminates
+// the member that holds initiates another one. Facts about a step are literals in preconditions
+// and conditions; what does not stand there as a literal is not seen, and the group is then left
+// alone.
+//
+// Cost: quadratic in the rows of a group and in its members; both are limited. The pairwise
+// exclusions, and the disjunction, are added at every timepoint as clauses of an origin of their
+// own. They follow from the model, so its traces stay the same, and explanations never use them.
+
 #include "compiler/ground/invariants.h"
 
 #include <algorithm>

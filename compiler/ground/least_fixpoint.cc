@@ -1,3 +1,16 @@
+// Least solution of a system of equations between truth values and formulas.
+//
+// Unknowns that need each other form the strongly connected components of the graph of needs
+// (Tarjan 1972); each component is solved after those that it needs. If a need inside a
+// component is negated the system is not stratified and has no least solution: the shortest way
+// back, found breadth first, is reported as a cycle. Else the definitions are monotone in the
+// component's unknowns. All start as false and are replaced by their definitions, round by
+// round. A round that changes anything makes one more of n unknowns true under some valuation,
+// so n rounds reach the least fixpoint.
+//
+// Cost: the components are linear in the needs. A component of n unknowns takes at most n rounds
+// of n rewrites; formulas may grow, and the number of new nodes is limited.
+
 #include "compiler/ground/least_fixpoint.h"
 
 #include <algorithm>

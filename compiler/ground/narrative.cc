@@ -1,3 +1,16 @@
+// Bounds from events at known timepoints, by a walk forward in time.
+//
+// If Happens is completed and all axioms that can give a symbol's events a reason speak of fixed
+// timepoints, the events of the symbol are scheduled: they happen at these occurrences at most.
+// Fluents that have inertia, are known at 0 and are changed by scheduled events alone are then
+// followed. At each occurrence the effect axioms are grounded for this timepoint only, their
+// conditions are evaluated in three values, and a fluent afterwards holds, does not hold, or may
+// do either: it may hold if something may begin it, or it may have held and nothing must have
+// ended it. So the bounds contain every trace, and joins see what may hold when.
+//
+// Cost: one grounding of the scheduled effects for each timepoint with an occurrence, linear in
+// the rows found.
+
 #include "compiler/ground/narrative.h"
 
 #include <algorithm>

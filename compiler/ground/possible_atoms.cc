@@ -1,3 +1,16 @@
+// An upper bound on the atoms that can be true, as tables that joins run over.
+//
+// User predicates: unit propagation over the constraints found so far, together with completion,
+// is repeated until nothing is learned; an atom that is false then gets no row. Fluents: a
+// fluent that is false at first holds later only if some row initiates it whose condition may be
+// true given the fluents reached so far. Rows are tried until no further fluent is reached;
+// nothing is ever removed (the delete relaxation of planning), so what is not reached is false
+// in every trace. Events and tracked fluents have bounds by timepoint, from the narrative.
+//
+// A table finds the rows for some bound columns by a hash index that is built with the first
+// question for these columns. Cost: each round is linear in the constraints or rows; a predicate
+// costs the product of its sorts, which is limited.
+
 #include "compiler/ground/possible_atoms.h"
 
 #include <algorithm>

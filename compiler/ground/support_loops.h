@@ -21,8 +21,8 @@ namespace parallax::compiler {
 ///
 /// The reasons of ground atoms are split into conjunctions of literals. Atoms that follow from
 /// facts and atoms that nothing can bring about are removed; the remaining atoms are searched for
-/// circles whose literals do not contradict each other. Linear in the reasons but for that search,
-/// which has a budget.
+/// circles whose literals do not contradict each other. At most quadratic in the reasons but for
+/// that search, which has a budget.
 class SupportLoops {
  public:
   /// `model` outlives the object.

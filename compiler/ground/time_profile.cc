@@ -1,3 +1,13 @@
+// Tells whether a formula says the same at every timepoint.
+//
+// Timepoints are read as `variable + constant`. If all of them use one and the same universally
+// quantified variable, the variable stands nowhere else, and none is a plain integer, the
+// formula is uniform: the grounder makes one copy at the earliest timepoint and repeats it by
+// moving variables. The least and the greatest constant give the value at which the earliest
+// timepoint is 0 and the horizon that one copy needs; an event needs the timepoint after it as
+// well. Anything else is fixed (integers alone), rigid (no timepoint) or mixed. Linear in the
+// formula.
+
 #include "compiler/ground/time_profile.h"
 
 #include <algorithm>

@@ -1,3 +1,16 @@
+// Runs a compiled plan on a stack machine until something has to be decided outside of it.
+//
+// A state has frames, guards, a stack of values, the branches of `par` and the links of
+// designators, all of them plain numbers that name code and stored values. So a state is copied
+// as it is, and its key is a list of numbers by which explored states are compared; counters of
+// loops can be left out of the key. The machine stops at a perform, a question to the model, a
+// proof, a failure that nothing handles, a bound or the end. Whoever explores the plan decides
+// and goes on, with one copy of the state for each answer.
+//
+// A unit that is entered again more often than the limit ends in a bound if something was
+// performed since its outermost call, else it is an endless recursion and an error. Loops count
+// their iterations against a bound. Cost: steps, values and text are limited.
+
 #include "compiler/interpreter/plan_machine.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,16 @@
+// Proofs by the clauses of a plan: resolution depth first and in written order, as in Prolog.
+//
+// Goals still to be proved are a linked list, so alternatives share their ends; choices are a
+// stack, and bindings are undone by a trail. `cut` drops the choices made since its clause was
+// tried; `not`, `->`, `once` and `findall` are built from choices, cuts and failure. There is no
+// recursion, so depth is no matter.
+//
+// Some goals only the model can answer. The proof then stops with a question whose ways fork the
+// exploration of the plan, and is run again from its start with one answer more; as it depends
+// on nothing else, it asks the same questions again. Of the orders in which the model's answers
+// could be tried, only those that lead to different ends are explored. Cost: steps are counted
+// and limited.
+
 #include "compiler/interpreter/prolog_search.h"
 
 #include <algorithm>

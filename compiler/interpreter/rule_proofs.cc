@@ -1,3 +1,16 @@
+// Proofs that a running plan asks of the rules in its files, with questions to the model.
+//
+// A proof is a Prolog search (prolog_search.cc). A goal that the rules leave to the model
+// becomes a question: the formula of a query with each combination of constants for its free
+// variables, as ways that may hold. Whoever explores the plan decides which way holds and runs
+// the proof again from the beginning with the answers so far, so a proof is a function of its
+// goal and of the answers and keeps no state between two questions. Lisp functions that rules
+// call run on the plan's machine; they may ask and prove, but not perform. An error that such a
+// function signals fails its goal; an error of ours, such as a function that we lack, ends
+// everything: what cannot be computed must not look like a rule that does not hold.
+//
+// Cost: steps of a proof, ways of a question and the nesting of proofs are limited.
+
 #include "compiler/interpreter/rule_proofs.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,17 @@
+// The graph of a plan: its code is run on static values, and every decision of the model is a
+// fork.
+//
+// The machine stops at each perform, at each question to the model and at each choice between
+// parallel branches. There the state of the machine (stacks, frames, variables) is looked up: a
+// state that was met before ends the path at the known place of the graph, else a location or
+// branch is added and a job is queued for each way on. So the graph grows with the states of the
+// plan and not with its paths, and loops that come back to a state become cycles. Objects that
+// only the model knows are kept in registers; a register is used again once no value of the
+// state refers to it. Loops and calls beyond their bounds end in terminals that say so.
+//
+// Jobs are taken last in, first out, success first, so ids follow the order of the text. Cost:
+// the steps of the machine for each pair of state and way; states, words and steps are limited.
+
 #include "compiler/interpreter/unroller.h"
 
 #include <fmt/core.h>

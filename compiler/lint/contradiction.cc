@@ -1,3 +1,13 @@
+// Conditions that never hold, as far as their conjuncts show it.
+//
+// Negations are pushed in as far as conjuncts go, and the conjuncts are gone through once with
+// four tables: bounds of terms that are compared with numbers, constants that terms are equated
+// with or differ from, pairs of terms that are equal or different, and atoms with their signs.
+// Terms that are written alike denote the same, and different constants differ. The first
+// conjunct that contradicts a table is the reason. Nothing is solved and no constant is
+// propagated, so a condition may be contradictory for deeper reasons; what is reported is
+// certain. Cost: linear in the condition, times a logarithm for the tables.
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>

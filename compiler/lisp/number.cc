@@ -1,3 +1,13 @@
+// Lisp's numbers as exact fractions for as long as they fit into 64 bits.
+//
+// A number is a numerator and a denominator in lowest terms and says whether Lisp would call it
+// a rational, a single or a double. Decimal fractions are exact as well, so 0.1 and 0.2 make 0.3
+// and plans do not depend on rounding. The kind of a result is the widest of its operands'.
+// Every operation checks for overflow; where the exact result does not fit it goes on as a
+// double, of the kind single at least. Fractions are compared by cross-multiplication.
+//
+// Cost: one greatest common divisor for each operation.
+
 #include "compiler/lisp/number.h"
 
 #include <fmt/core.h>

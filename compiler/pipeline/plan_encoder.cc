@@ -1,3 +1,19 @@
+// Constraints by which a ground model follows the graph of a plan.
+//
+// Control is at one place at each timepoint, a location or a terminal. A location performs its
+// event at t. Whether that succeeds is a formula of the binding table; success and failure lead
+// on through branches, each side under its guard or its negation. A place's atom at t + 1 is
+// equal to the disjunction of the conditions that lead to it. These conditions split the atoms
+// at t, so control is again at exactly one place; only places that can be reached at t get an
+// atom. Terminals keep control. Events that the plan may perform happen only where it performs
+// them.
+//
+// A perform that returns something picks one object for which its formula is true. Registers
+// have exactly one value while the plan may still read them, and none elsewhere.
+//
+// Cost: for each timepoint the reachable places with all ways through the branches behind them;
+// for registers and results the squares of the numbers of values.
+
 #include "compiler/pipeline/plan_encoder.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,17 @@
+// A temporal formula over finite traces as a deterministic run through sets of goals.
+//
+// A goal is a node of the formula or its negation. A goal at t expands into choices: which goals
+// remain for t + 1, and under which condition on t (always F: F now and the same goal later; F
+// until G: G now, or F now and the same goal later). A state is a set of goals, a conjunction.
+// The states that a trace so far allows are followed together, one variable for each state and
+// timepoint, so the value for every end n is read off one run forwards, instead of one unrolled
+// formula for each end. Choices that ask for more than another one with the same condition are
+// left out.
+//
+// Cost: linear in the horizon, exponential in the operators at worst; the number of steps is
+// limited, and the caller then unrolls the formula for each end. Operators about the past stay
+// leaves.
+
 #include "compiler/pipeline/temporal_automaton.h"
 
 #include <algorithm>

@@ -1,3 +1,18 @@
+// Linear temporal logic over finite traces (De Giacomo and Vardi 2013) as formulas of the model.
+//
+// The value of an operator at t follows from its parts at t and from itself at t + 1 (until,
+// ...) or at t - 1 (since, ...), so each operator is one small definition for each timepoint,
+// named by an auxiliary. Each node has two values: for traces that end at t, where nothing
+// happens, and for those that go on. A goal is asked about every end; the first of these ways
+// that applies is taken: an equal formula that looks back, whose values for all ends are found
+// in one pass; the automaton of the formula or of its negation (temporal_automaton.cc); or else
+// one unrolled formula for each end. A violation is asked about one end, the first hit, so one
+// unrolling suffices, in which a trace that is not complete counts only what is false however it
+// goes on.
+//
+// Cost: operators times the horizon for a past formula or a violation, times the horizon squared
+// when unrolled for each end.
+
 #include "compiler/pipeline/temporal_encoder.h"
 
 #include <algorithm>

@@ -1,3 +1,13 @@
+// Temporal formulas in negation normal form, without quantifiers around their operators.
+//
+// Negations are pushed down to the state formulas by the duals of the operators (until and
+// release, next and weak next, since and triggered), quantifiers over temporal operators are
+// expanded into their instances, and a part under the same bindings is one node. Children come
+// before their parents, so passes go through the nodes in order. A formula about the future
+// whose operators are not nested has an equal one that looks back from the end: eventually F is
+// once F, always F is historically F, until and release likewise. Cost: linear in the expanded
+// formula; its size and depth are limited.
+
 #include "compiler/pipeline/temporal_tree.h"
 
 #include <algorithm>

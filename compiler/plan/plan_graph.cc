@@ -1,3 +1,16 @@
+// Searches on the graph of a plan, and its text.
+//
+// Shortest way: breadth first by layers of performs; branches cost nothing, so their targets
+// join the present layer. Longest way: depth first, a node being finished after all its
+// successors; a successor that is still open is a cycle, and then there is none. Registers that
+// the rest of the plan reads: the least fixed point backwards, what a place reads itself and
+// what its successors need, less what a perform binds when it succeeds. Earlier attempts: for
+// each perform form and event, the places that can be reached behind the failure of one of its
+// locations; if the same perform is among them it repeats that attempt.
+//
+// Cost: ways are linear in the graph, registers take hardly more than three rounds; attempts
+// take one search for each location and are limited in visits.
+
 #include "compiler/plan/plan_graph.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,12 @@
+// One execution of a plan, as a walk through its graph.
+//
+// Between two performs control passes branches. Those with a guard ask the surroundings, and
+// free ones go either way. The ways from here to a perform or an end that an execution can come
+// to are counted first, guards being asked once each; then one number below the count chooses a
+// way, so that all are equally likely however the branches are nested. Branches make no cycles,
+// so the count ends; it is remembered by branch. Cost: linear in the branches between two
+// performs.
+
 #include "compiler/plan/plan_walk.h"
 
 #include <algorithm>

@@ -1,3 +1,19 @@
+// Checks a valuation against every rule of a model, one after the other, without a solver.
+//
+// The model is expanded by plain instantiation (expanded_model.cc). The instances of axioms,
+// DEC3 to DEC12 for each fluent and timepoint, releases and the reasons of completed atoms are
+// evaluated under the valuation. A completed atom that is true has a reason if some formula
+// becomes false when the atom does. A formula that needs a timepoint after the last one is
+// unknown and breaks nothing.
+//
+// Effects that conditions mention are the alternating fixpoint (Van Gelder 1989). Where an
+// effect is negated the last set found is taken for all effects: too few give a least set with
+// too many, too many give one with too few, and they approach each other. If they still differ
+// when nothing changes, an effect depends on its own absence, which is a finding as well.
+//
+// Cost: each formula once, and for each completed atom all that may be its reasons, within a
+// limit. The fixpoint for n effects takes at most n rounds of two times n sweeps over the rows.
+
 #include "compiler/reference/reference_evaluator.h"
 
 #include <algorithm>

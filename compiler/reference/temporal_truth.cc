@@ -1,3 +1,15 @@
+// Truth of a temporal formula at every timepoint of a finite trace, by the definition.
+//
+// The value of a part is a list, one truth value for each timepoint, none where the part names
+// something that does not exist. Leaves are instantiated and evaluated for each timepoint;
+// quantifiers, connectives and operators combine the lists of their parts. Always, Until and
+// their like look at all the timepoints that their definitions name, not at a recurrence from
+// the next one: this is the reference. Why a formula is false is found by going down to the part
+// and the timepoint that decide.
+//
+// Cost: for n timepoints n^2 for an operator, n^3 for Until and Since, times the instances of
+// the quantifiers around it; a budget limits them.
+
 #include "compiler/reference/temporal_truth.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// Small wrong edits of a model, one axiom at a time, to see whether a check notices them.
+//
+// Operators follow the mistakes that people make in axioms: an axiom, a precondition, a release
+// or a condition forgotten, a condition or a fact negated, a condition added, two arguments of a
+// sort swapped, Initiates and Terminates exchanged, an effect on another fluent (mutation
+// analysis, DeMillo, Lipton and Sayward 1978). Every operator is applied at every place where it
+// fits. An edit that changes no text is left out, as is a condition that is known to be idle; a
+// fluent is used only where the axiom's file knows it. Mutations come in the order of the text.
+//
+// Cost: linear in the conditions and effects, times the pairs of an axiom's variables or the
+// fluents of the model.
+
 #include <algorithm>
 #include <cctype>
 #include <map>

@@ -1,3 +1,14 @@
+// Small wrong edits of a plan, one place at a time, to see whether a check notices them.
+//
+// Operators follow mistakes in plans: a perform or a call forgotten, two that follow each other
+// exchanged, an argument replaced with another value that the plan uses in that place, two
+// neighbouring arguments exchanged, a guard or a handler dropped (mutation analysis, DeMillo,
+// Lipton and Sayward 1978). A name is used only where it is bound. Only what the author wrote is
+// edited, not what macros made or what is quoted, and an edit is a change of the text. Mutations
+// come in the order of the text.
+//
+// Cost: linear in the plan's data, with at most three other values for an argument.
+
 #include <fmt/format.h>
 
 #include <algorithm>

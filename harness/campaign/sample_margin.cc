@@ -1,3 +1,16 @@
+// How close a simulation was to a discrepancy: one number from many distances.
+//
+// The parts are the distances of bodies and joints from the borders of the expected cells, and
+// the margins that controllers report; of a part that is read several times the least value
+// counts. Parts about the start alone are left out, those of bodies that have not moved since.
+// Parts have different units, so each is divided by its greatest value in the first runs that
+// have it, and the least quotient is the margin. A part that was below zero in a run that went
+// as predicted tells nothing about discrepancies and is left out, for earlier runs too, as is
+// one that never varied. The verdict decides the sign: a discrepancy is below zero, every other
+// run above.
+//
+// Cost: linear in the fluents and timepoints for a run's parts, and in the parts for its margin.
+
 #include "harness/campaign/sample_margin.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,13 @@
+// Looks for a discrepancy of a trace before the runs that count.
+//
+// A strategy (harness/search) proposes starts as points of the unit cube over what is drawn;
+// they are simulated in batches, and the margins of the answers guide the next proposals.
+// Margins are on a scale that the runs so far define, so all of them are given anew with each
+// batch. A whole batch is always asked for, even if fewer runs are left, so that what is
+// proposed does not depend on where the search ends, nor on the number of jobs. The search uses
+// a random stream of its own and nothing that it shows counts for a claim: its starts are
+// chosen, not drawn. It ends with the first discrepancy.
+
 #include "harness/campaign/search_phase.h"
 
 #include <fmt/format.h>

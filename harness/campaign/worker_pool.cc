@@ -1,3 +1,16 @@
+// Threads with a simulator each that take simulations from one queue, in any order.
+//
+// Results are asked for by sample and phase, so the order in which they are ready decides
+// nothing. A worker elsewhere may be slow or vanish. When a simulation is repeatable, it is
+// therefore given to a second worker if it has taken twice the average and the queue is empty,
+// the oldest first; the first result counts. A simulation whose worker is gone goes back to the
+// front of the queue unless another worker is still at it. To abandon all work a generation is
+// counted up: jobs of an older one end at their next look and their results are dropped. The
+// stop flag is raised by a signal handler, which cannot notify, so it is looked at now and then.
+//
+// Cost: a job is taken in constant time; the look for a late one is linear in the jobs under
+// way.
+
 #include "harness/campaign/worker_pool.h"
 
 #include <algorithm>

@@ -1,3 +1,12 @@
+// Which kind of cause fits the runs of one discrepancy.
+//
+// The first that applies: all runs fail, at least five of them (an axiom is wrong); a rule of
+// one or two borders tells failing starts (failure_rule.cc: the region is too coarse); one and
+// the same start both fails and passes (the outcome is open, or the simulator is in doubt). Else
+// the runs tell nothing by themselves, and what was tried since decides: the borders of a start
+// that was moved (start_line.cc), or whether the failure vanishes with other seeds or half the
+// step. Linear in the runs but for the rule.
+
 #include "harness/cause/cause_kind.h"
 
 #include <fmt/format.h>

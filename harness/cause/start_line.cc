@@ -1,3 +1,15 @@
+// The least change of a failing start that makes it pass, one parameter after the other.
+//
+// A start is shrunk towards the middle of its cell: each parameter is moved there alone and
+// stays there if the start still fails as before. A move that ends the failure may not end it
+// behind a later one, so each is tried again until nothing has moved since the last attempt.
+// What is left decides: moving it, and nothing else, ends the failure. Between the start and the
+// middle the border of each such parameter is then bisected, all in step so that simulations run
+// in parallel. A scan instead simulates a row of points along one parameter and bisects every
+// change of verdict between neighbours.
+//
+// Cost: parameters * (late moves + 1) simulations, and log2(width / tolerance) for each border.
+
 #include "harness/cause/start_line.h"
 
 #include <algorithm>

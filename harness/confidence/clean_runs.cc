@@ -1,3 +1,16 @@
+// Bounds on the probability that a run fails.
+//
+// Clean runs alone: if p is the probability, n clean runs have probability (1-p)^n, so p >=
+// epsilon is excluded with confidence C after ln(1-C) / ln(1-epsilon) of them. With failures,
+// watched after every run: the wealth of a uniform mixture of bets against "p >= epsilon" has
+// expectation 1 at most, so it ever reaches 1/(1-C) with probability 1-C at most (Ville 1939).
+// The mixture's integral is an incomplete beta function; its continued fraction is used where
+// the powers in front of it cancel. With a number of runs fixed in advance: Clopper and Pearson
+// (1934), a quantile of the beta law.
+//
+// The wealth grows with epsilon, so bounds and numbers of runs are found by bisection, bounds
+// down to neighbouring numbers.
+
 #include "harness/confidence/clean_runs.h"
 
 #include <cmath>

@@ -1,3 +1,16 @@
+// The stop rule of Meywerk et al., Section III-C, in several readings.
+//
+// Final parameters are regressed on the initial ones that vary (regression.cc). For each tested
+// one an interval is taken over the whole cuboid of starts; the rule holds if every interval
+// lies in its expected cell. The paper's interval is the range of the fitted mean, widened by z
+// sigma / sqrt(s). A prediction interval is extreme at corners of the cuboid, since the mean is
+// linear and the half-width convex; up to 16 parameters the corners are visited in the order of
+// a Gray code, where one step changes one coordinate, beyond that they are bounded by the
+// triangle inequality. Parameters that a run only hands on unchanged can be exempt.
+//
+// Cost: evaluating does not depend on the number of runs; n parameters take 2^n * k steps for k
+// coefficients, or n * k when bounded.
+
 #include "harness/confidence/paper_rule.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,12 @@
+// Distribution functions and their inverses, to about 1e-10.
+//
+// The normal quantile is Wichura's rational approximation (1988, AS 241) with one Newton step.
+// The incomplete beta function is its continued fraction, evaluated by Lentz's method on the
+// side where it converges fast, and by symmetry on the other; Student's t follows from it.
+// Inverses take Newton steps inside a bracket that shrinks around the root, and halve the
+// bracket where a step would leave it, so they always end. Tails are computed by themselves, not
+// as one minus the rest, where that would cancel.
+
 #include "harness/confidence/quantiles.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// Do counts of failures support or refute a claim about their probability, or a change of it?
+//
+// For numbers of runs fixed in advance the tests are exact: binomial tails for a claim (Clopper
+// and Pearson 1934), the hypergeometric tail for two rates (Fisher's exact test). If the results
+// may have decided when to stop, bounds that hold at any time take their place (clean_runs.cc).
+// Support needs the bounds of both sides, each at the full level (an intersection-union test);
+// refutation takes one of two and so halves the error. Lost runs are counted for whatever makes
+// the answer weaker. Numbers of runs that would be enough are found by doubling and bisection.
+//
+// Cost: some evaluations of an incomplete beta function; Fisher's sum ends where further terms
+// change nothing.
+
 #include "harness/confidence/rate_evidence.h"
 
 #include <fmt/format.h>

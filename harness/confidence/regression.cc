@@ -1,3 +1,15 @@
+// Least squares over rows that come one at a time.
+//
+// Only the triangle of the QR decomposition of [D Y] is kept. A row is turned into it by Givens
+// rotations, each of which makes one entry of the row zero. The triangle has the coefficients,
+// the squared residuals (what is left of an outcome's column below the design's) and the inverse
+// that leverages need; the normal equations, which would square the condition number, are never
+// formed. Columns that depend on each other show in a pivoted decomposition of the triangle, and
+// there is no fit then.
+//
+// Cost for k columns and m outcomes: (k + m)^2 for a row and k^3 for a fit, however many rows
+// came before.
+
 #include "harness/confidence/regression.h"
 
 #include <Eigen/QR>

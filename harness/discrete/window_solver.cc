@@ -1,3 +1,13 @@
+// Successors of a state in one window of a model, and the least events that it demands.
+//
+// States come from a query that lists all valuations of the slots after the step, sorted, so
+// that a draw depends on the seed alone. Least sets of events: if nothing else has to happen,
+// the given events are the only one. Otherwise a valuation is found and its events are reduced,
+// each time by a clause under a guard that some of them is absent and an assumption that no
+// other happens, until none can be left out; then all supersets of the set are excluded, and the
+// next one is sought. So each set is minimal by inclusion, and none is missed. Cost: for each
+// set as many calls as events are left out, and two more; there may be exponentially many sets.
+
 #include "harness/discrete/window_solver.h"
 
 #include <algorithm>

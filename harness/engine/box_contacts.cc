@@ -1,3 +1,15 @@
+// Contacts of two boxes by separating axes (Gottschalk, Lin and Manocha 1996) and clipping.
+//
+// The 15 candidate axes are the normals of both boxes' faces and the cross products of their
+// edges; if the boxes are apart along any of them there is no contact. Else the axis of the
+// least overlap is the normal. For a face, the other box's face that looks most against it is
+// clipped at its four sides (Sutherland and Hodgman 1974), and the corners below its plane are
+// the contacts, eight at most. For two edges it is the point midway between their nearest
+// points. Where edges overlap a little less than a face that is about as deep and has the same
+// normal, the face is taken, so that a box laid flat stands on its corners.
+//
+// Cost: constant.
+
 #include "harness/engine/box_contacts.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,14 @@
+// Contacts of a face of a convex polyhedron with another one, as with boxes (box_contacts.cc).
+//
+// For each face of both, the overlap is how far the other polyhedron's lowest corner lies below
+// its plane; the face of the least overlap is the reference. The other's face that looks most
+// against it is clipped at the reference's edges, and the corners below its plane are contacts.
+// Of many, the deepest is taken and then again and again the one farthest from those taken, up
+// to eight, so that a body stands on all sides of its face. If the engine found a clearly lesser
+// overlap along another normal, two edges touch, and there are none.
+//
+// Cost: faces times corners of the pair.
+
 #include "harness/engine/hull_contacts.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,15 @@
+// The tree of links of a world: masses, centres and inertias, and the joint that moves each.
+//
+// Bodies that are fixed to each other are one link. A body's mass is spread over its shapes by
+// volume unless it states its inertia. Parts are joined by the parallel axis theorem (Steiner):
+// the mass-weighted centre, and the sum of the parts' inertias about it. Every link is moved by
+// one joint at most, and links are put in order, parents first, by passes that place each link
+// whose parent has its place; links that never get one are in a ring of joints, which is an
+// error.
+//
+// Cost: linear in bodies and shapes; the order takes as many passes as the tree is deep, at
+// worst.
+
 #include "harness/engine/link_tree.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,19 @@
+// Contacts, overlaps and rays in a world that MuJoCo steps.
+//
+// Two boxes are collided by a function of our own (box_contacts.cc) in the place of the
+// engine's. With a hull the engine finds the direction and the depth, and where a face lies on
+// the other shape the contacts are put at corners of the common part (hull_contacts.cc). The
+// engine's hooks carry no context, so the thread that asks names the world. Contacts get the
+// friction of our rules; pairs that never collide are dropped.
+//
+// A probe is a geom that collides with nothing by itself: it is put where it is asked for,
+// spheres round the geoms exclude most of them, and the collision function gives the depth for
+// the rest. A ray against a hull is clipped by the half-spaces of its faces (Cyrus and Beck
+// 1978).
+//
+// Cost: a probe or a ray is linear in the geoms, a ray in the faces of the hulls that it comes
+// near.
+
 #include <mujoco/mujoco.h>
 
 #include <algorithm>

@@ -1,3 +1,18 @@
+// Contacts of a step, overlaps and rays in a world that ODE steps.
+//
+// ODE's spaces find the pairs, spaces of bodies first, then the shapes in them. Of the many
+// points at which a hull touches, the deepest is kept, then again and again the one farthest
+// from those kept (farthest-point sampling, Gonzalez 1985), so that a body stands on all sides
+// of its base. The mesh of a hull is a surface; what lies wholly inside touches nothing, so
+// without contacts a point of the one shape is looked up among the planes of the other's faces.
+// A body that something wakes falls asleep again in the next step if it has not gained the
+// threshold's speed in one, and would lie still in a moving drawer for ever; so what moves keeps
+// awake what it touches. Contacts become joints later: they may be thinned out (ode_thin.cc),
+// and they decide which joints rest.
+//
+// Cost: for each pair ODE's collision, and for a hull the product of its points and those kept.
+// A probe or a ray is compared with the shapes whose boxes it meets.
+
 #include <ode/ode.h>
 
 #include <algorithm>

@@ -1,3 +1,16 @@
+// Faults in the placement of bodies and regions that can be told before any start is drawn.
+//
+// Two bodies overlap at every start if no start may choose the place of either, or of what it
+// hangs on; the engine is asked about these at their default places (sweep.cc), and about the
+// floor alone where only the height is fixed. Fixed furniture may reach into furniture, but two
+// pieces whose boxes cover each other are one too many. A point is without support if neither
+// furniture nor floor is met there, and so is a box grown by the longest travel of a slider;
+// boxes that begin below the height of all free bodies stacked are not looked at. A region is
+// buried if it lies wholly inside one box of a fixed body. A box is in another if all its
+// corners are, as both are convex.
+//
+// Cost: for each body one question to the engine, and quadratic in the fixed bodies.
+
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>

@@ -1,3 +1,12 @@
+// Tries a motion without moving anything.
+//
+// The shapes of the moving bodies are put at evenly spaced places along a straight way, or at
+// headings of a turn, and the engine is asked at each whether they overlap something by more
+// than the tolerance. The first hit ends it. For a straight way the hit also tells how much room
+// is missing across it: seen along the way, both boxes are convex polygons whose sides are edges
+// of the boxes, so the least shift that parts them is found along the normals of these sides,
+// exactly. An obstacle thinner than a step may be passed over. Cost: steps times shapes.
+
 #include "harness/engine/sweep.h"
 
 #include <Eigen/Geometry>

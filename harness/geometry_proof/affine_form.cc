@@ -1,3 +1,17 @@
+// Affine arithmetic (Stolfi and de Figueiredo 1997) with a fixed set of symbols and outward
+// rounding.
+//
+// A value is a centre, a slope for each variable and a rest: it lies within centre + sum(slope
+// e) +- rest for all e in [-1, 1]. Sums and differences are exact but for rounding; of a
+// product, the terms that are linear in the variables are kept, and what is quadratic goes into
+// the rest. A function becomes its tangent (for an absolute value that changes sign, the chord),
+// with a bound on the distance added to the rest. Every operation adds what rounding may have
+// lost, taken twice as large as it is. So bounds are always valid, and unlike intervals they do
+// not lose that two values depend on the same variable.
+//
+// Cost: linear in the variables for each operation; the overestimate shrinks with the square of
+// the box.
+
 #include "harness/geometry_proof/affine_form.h"
 
 #include <algorithm>

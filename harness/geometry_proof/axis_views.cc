@@ -1,3 +1,11 @@
+// Two upright boxes seen along axes of the plane, as functions of the start (affine_form.cc).
+//
+// Two rectangles are apart exactly if they are along the normal of one of their four sides
+// (separating axes). Along each of them the view gives the distance of the middles and the sum
+// of the half widths: their difference is a gap, and where it is positive for a whole box of
+// starts, the shapes are apart there. A part that is swept along a straight way is the hull of
+// its two ends, so its gap is the lesser one of both, and the normal of the way is a fifth axis.
+
 #include "harness/geometry_proof/axis_views.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// Proof over a whole region by cutting it into boxes.
+//
+// A check answers for a box: safe throughout, refused throughout, or open. Open boxes wait in a
+// queue, the largest and of these the oldest first, and are halved in the middle along the
+// variable that sways the open questions most, seen over the box. A half inherits only the
+// questions that were open for the whole. It ends when the share that is not decided is small
+// enough or the limits are met. Boxes are halved in their middles only, so shares are powers of
+// two, and a list of boxes can be checked to fill the region.
+//
+// Cost: one check for each box, exponential in the variables that matter in the worst case; the
+// number of boxes is limited. The result depends on the input alone.
+
 #include "harness/geometry_proof/branch_and_bound.h"
 
 #include <algorithm>

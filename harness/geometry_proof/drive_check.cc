@@ -1,3 +1,15 @@
+// The sweep test of a drive, decided for boxes of starts.
+//
+// For each pair of a part of the robot and an obstacle there are two questions: is the part
+// clear on the straight way, and in the turn at the goal? Clear: along one axis the gap between
+// the shapes (axis_views.cc) is positive for every start of the box. For a turn, the circle
+// round the part is tried first; then the range of headings is halved until each piece is clear,
+// or a piece overlaps in the middle of the box. Refused: at a step that the controller tries
+// from every start of the box, the shapes overlap along all axes. Else the question is open, and
+// the slopes of its gap tell branch_and_bound.cc which variable to halve.
+//
+// Cost: linear in the open questions; a turn takes at most 2^9 pieces or so.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// The world of the second evaluation: shapes by their corners, in ranges of places.
+//
+// It shares no code with proof_scene.cc, so that a mistake of one does not confirm itself:
+// places come from the code that starts simulations, shapes are polygons and not half widths,
+// and a frame is a range of x, y and heading instead of an affine form. What is not exactly
+// known is a polygon round everywhere that the shape may be, or a slack that is added to it. Two
+// shapes are shown to be apart by one direction, chosen in the middle of the box: the farthest
+// that one reaches in it, for all places of its frame, lies before the nearest of the other.
+// Circles round the shapes decide most pairs.
+//
+// Cost: the corners of a pair for each direction; boxes are cut by the callers.
+
 #include "harness/geometry_proof/flat_scene.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,12 @@
+// Polygons in the plane, and where they may be while their frames are in ranges.
+//
+// Hulls by a sweep over sorted points, lower and upper half; the common part of two convex
+// polygons by clipping one at each side of the other (Sutherland and Hodgman 1974). The cosine
+// of a range of angles is exact: its ends, and 1 or -1 where the range passes them. From it
+// follow how far a polygon reaches in a direction for all places and headings of its frame, and
+// whether a box contains a point for all of them. Both are bounds on the safe side, as x, y and
+// heading are taken as independent.
+
 #include "harness/geometry_proof/flat_shapes.h"
 
 #include <algorithm>

@@ -1,3 +1,12 @@
+// The test of a grasp from above, decided for boxes of starts: the hand goes straight down to a
+// body and up again.
+//
+// Everything is seen from the body as it is believed to lie, with bounds on the error of sight.
+// The hand may be turned either of two ways round, which depends on the base's heading. A pair
+// of a part and an obstacle is clear if their heights never meet or some axis shows a gap for
+// the whole box (axis_views.cc). Refused: each way round that is possible meets something, at a
+// height that is tried, along all axes. Linear in the open pairs.
+
 #include <fmt/format.h>
 
 #include <algorithm>

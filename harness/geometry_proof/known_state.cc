@@ -1,3 +1,13 @@
+// Knowledge of the world after actions that succeeded.
+//
+// Before the first action all is where the start puts it. Each controller that succeeds changes
+// that in its own way: a drive puts the base at its goal within its tolerance, a drawer's slider
+// at its stop, a pick-up a body into a hand, a place or an opened gripper leaves its body
+// anywhere. What an action was not to move stays within a small drift. These are assumptions,
+// each told in words; the proof holds under them, and a check against simulations can refute
+// them. After a controller whose effects are not modelled nothing is known. Linear in the bodies
+// for each action.
+
 #include "harness/geometry_proof/known_state.h"
 
 #include <fmt/format.h>

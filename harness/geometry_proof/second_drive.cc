@@ -1,3 +1,15 @@
+// The sweep test of a drive once more, without sharing code with drive_check.cc.
+//
+// Safe: for every pair some direction parts the obstacle from both ends of the way, hence from
+// all between, and, with the range of headings halved as far as needed, from the part in the
+// turn. Refused: there is a place on the way or in the turn that the controller tries from
+// everywhere in the box, for each number of steps that the way's length may ask for, and a point
+// that both shapes contain then throughout. Where that does not show, the box is cut along the
+// widest variable that moves the pair, and both halves have to be confirmed; pairs that are
+// clear in a box are not asked about in its halves.
+//
+// Cost: at most `effort` pieces of a box, each linear in the pairs that are left.
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,12 @@
+// The test of a grasp from above once more, without sharing code with hand_check.cc.
+//
+// The hand is a set of polygons in the frame of the body as it is believed to lie, for both ways
+// round, measured from the pads as the world describes them. Safe: every part is apart from
+// every obstacle that may be level with it, by circles or by one direction for the box. Refused:
+// for each way round that is possible some point lies in a part and an obstacle throughout, at a
+// height that is tried. A box that does not show it is cut along the widest variable of the body
+// or the base's heading. At most `effort` pieces, each linear in the pairs.
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,12 @@
+// Reach and gaze once more, by intervals.
+//
+// The shoulder or the camera is a point of the base's frame; its coordinates in the world are
+// intervals, from the ranges of x, y and heading. Distances follow from squares of intervals;
+// the pan to a rectangle of places that does not hold the origin is extreme at its corners, the
+// tilt follows from the least and the greatest distance and height. If these ranges do not
+// decide, the box is halved along the widest variable of the robot. Lengths and angles keep a
+// margin for rounding on either side. At most `effort` pieces.
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,13 @@
+// Which tests of a trace's actions can be decided by the start alone.
+//
+// The actions are gone through in order with what is known of the state: where each thing was at
+// the start, and what the actions before have done if they succeeded (known_state.cc). For each
+// action, tests of its controller are made that depend on nothing else: the sweep of a drive,
+// reach of a handle, gaze, the last stretch of a grasp. Each test gets its check and a second
+// evaluation (drive_check.cc, second_drive.cc). Where something is not known, the action is left
+// to simulation and the reason is told; after an action whose effects cannot be known, nothing
+// is. Linear in the actions.
+
 #include "harness/geometry_proof/trace_proof.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,15 @@
+// A way between two postures of a chain (RRT-Connect, Kuffner and LaValle 2000).
+//
+// Two trees of postures grow from the start and from the goal. In turns, one grows from its
+// nearest node a bounded step towards a sampled posture; where it arrives, the other grows
+// towards that as far as it can, and if it gets there the trees are joined. The samples are an
+// even sequence over the joint ranges, always the same, so that the answer is the same as well.
+// Branches are tested every `step`. The way found is shortened: from each posture the farthest
+// one that can be reached evenly comes next.
+//
+// Cost: for each round a look at all nodes of a tree and the tests of a branch; rounds are
+// limited.
+
 #include "harness/kinematics/chain_search.h"
 
 #include <algorithm>

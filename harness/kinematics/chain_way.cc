@@ -1,3 +1,11 @@
+// Joint positions along a straight way of the tool.
+//
+// The tool's pose is moved evenly and turned about one axis; at each small step the positions
+// are found from those before (inverse.cc, without restarts), so the arm keeps its posture. The
+// way ends early where no positions are near, where a joint would have to jump, or where a check
+// of the caller says so, and says why. Between samples positions are interpolated linearly. A
+// swing moves all joints evenly instead. Cost: a few steps of least squares for each sample.
+
 #include "harness/kinematics/chain_way.h"
 
 #include <algorithm>

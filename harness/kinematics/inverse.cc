@@ -1,3 +1,15 @@
+// Inverse kinematics by damped least squares (Wampler 1986; damping of Levenberg and Marquardt).
+//
+// The error of the tool is its offset and its turn, a radian weighed as so many metres. Each
+// step solves (J J^T + damping I) y = error and moves the joints by J^T y; a step that helps
+// lowers the damping, one that does not raises it. A joint at its stop that the step would push
+// out is taken out of the Jacobian and the step is solved again, so that the others make up for
+// it. A descent that ends short is followed by others from an even sequence of starts (Halton),
+// always the same; the nearest result is returned.
+//
+// Cost: at most `steps` Jacobians and 6 by 6 solutions for each start. That none is found does
+// not prove that there is none.
+
 #include "harness/kinematics/inverse.h"
 
 #include <Eigen/Cholesky>

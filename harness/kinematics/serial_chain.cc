@@ -1,3 +1,12 @@
+// Forward kinematics of a chain as a product of motions about fixed axes (Brockett 1984; Lynch
+// and Park 2017, section 4.1).
+//
+// All axes are given in one frame, where the joints are at 0. The motion of a part is the
+// product of the motions of the joints before it, each about its axis there, so no frames of
+// links are needed. A column of the Jacobian is the moved axis, and for a hinge its cross
+// product with the arm to the tool. Holding torques sum, for each joint, the moments of all
+// masses behind it about its moved axis. Linear in the joints, torques quadratic.
+
 #include "harness/kinematics/serial_chain.h"
 
 #include <algorithm>

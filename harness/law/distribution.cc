@@ -1,3 +1,14 @@
+// Draws from a distribution restricted to an interval, by inversion (Devroye 1986).
+//
+// A number u between 0 and 1 becomes the value with mass from + u (to - from) below it, where
+// from and to are the masses below the ends of the interval. No draw is thrown away, however
+// little mass the interval has. Far above the middle these masses are nearly 1 and their
+// difference is lost in rounding; there all is mirrored and masses are counted from the upper
+// tail, in which they are exact. An interval without any mass that a double can tell has no law.
+// A choice of values keeps those in the interval, with their weights.
+//
+// Cost: constant, and linear in the values of a choice.
+
 #include "harness/law/distribution.h"
 
 #include <fmt/format.h>

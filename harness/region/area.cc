@@ -1,3 +1,16 @@
+// Areas of the floor plan as unions of rings and simple polygons.
+//
+// A polygon is cut into triangles by its ears (Meisters 1975). Sizes of rings and triangles add
+// up to one scale; the first number of a uniform pair chooses the piece by size, its remainder
+// and the second number choose the point in it: for a triangle by the square root map, for a
+// ring by the radius whose circle has that size. So equal parts of the unit square go to equal
+// sizes. Where shapes overlap, the first one that a point is in answers for it and the others
+// have none, so the union is uniform as well. A point is in a polygon if a ray from it crosses
+// the border an odd number of times.
+//
+// Cost: ears take the cube of the corners at worst, once; a point is linear in pieces and
+// corners.
+
 #include "harness/region/area.h"
 
 #include <fmt/format.h>

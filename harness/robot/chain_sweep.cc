@@ -1,3 +1,15 @@
+// Tells what an arm would meet in another posture, without moving it.
+//
+// The shapes of the arm and of its load are noted once, each in the frame of the last joint that
+// moves it. For a posture the chain gives the motion of every joint, each shape is placed by it
+// and the engine is asked for an obstacle there, the arm itself being left out. Where room is
+// asked for, shapes are grown by it, hulls as the boxes round them. Parts from the third joint
+// on are asked about once more without the room, against the rest of the robot. To try a body
+// that turns as well, everything else is turned back instead, since the engine knows the body
+// only where it is.
+//
+// Cost: two questions to the engine for each shape and posture.
+
 #include "harness/robot/chain_sweep.h"
 
 #include <Eigen/Geometry>

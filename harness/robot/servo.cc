@@ -1,3 +1,15 @@
+// Velocities for motors that bring an axis, a point on a line or a point on an arc to a target.
+//
+// The wanted speed is the one from which the motion can still stop at the target: far away
+// sqrt(2 a d) as for constant deceleration a at distance d, nearby in proportion to the
+// distance; the square root is shifted so that both meet in value and slope. The command follows
+// it with bounded acceleration. Within the tolerance the axis brakes, and when it stands it
+// holds its place by a proportional correction. A line is one such axis along its direction, an
+// arc one over the angle turned; a bounded correction takes back what the point lies beside
+// them. The nominal time is that of a trapezoid of speeds plus the exponential decay at the end.
+//
+// Cost: constant for each step.
+
 #include "harness/robot/servo.h"
 
 #include <Eigen/Geometry>

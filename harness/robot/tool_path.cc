@@ -1,3 +1,15 @@
+// A way of an arm's tool between two points, from few straight stretches.
+//
+// Straight is tried first. Else the tool goes back, up, across, down and forward: for each
+// height, lowest first, up to three retreats of either end from which the way up is free, the
+// shortest first, are joined by a level stretch. A stretch is free if neither the palm, what it
+// holds nor, for a chain, a link meets anything on it, and the joints can follow. Postures at
+// new points are found from the nearest known one. If no such way exists, a chain may swing all
+// joints at once: postures that have the tool there are sought from several starts, first those
+// that one swing leads to, then by a search (chain_search.cc).
+//
+// Cost: up to some hundred stretches.
+
 #include "harness/robot/tool_path.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,15 @@
+// Search by cross-entropy (Rubinstein 1999) over the whole history.
+//
+// The best tenth of the points that count, at least six and at most six plus the dimensions,
+// give each coordinate a normal law with their mean and a widened deviation; new points are
+// drawn from it, those beyond a face of the cube put on the face. One point in ten is uniform,
+// so that the search never stops looking elsewhere. Once the deviations have shrunk to almost
+// nothing and some evaluations have passed since the last place was left, the place is left:
+// points around it count no more, and the law widens over the rest. Coordinates are treated as
+// independent.
+//
+// Cost: for each batch the best points times dimensions, and a look at each left place.
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,17 @@
+// Descent to a discrepancy with a local affine model (after Hasofer and Lind 1974, Rackwitz and
+// Fiessler 1978, with a trust region).
+//
+// Around the best point an affine model of the margin is fitted by least squares through that
+// point, near points weighing most; where the points tell nothing of a direction, the slope
+// before is kept. The next point lies downhill where the model predicts a margin just below
+// zero, or where the trusted radius or the cube ends. Every third point is mirrored instead, as
+// a distance from a border grows on both of its sides, and every third is off the way, to learn
+// the slope there. Progress widens the radius, steps in vain halve it. A place where nothing
+// helps any more is left, and its surroundings are avoided unless they are clearly better.
+//
+// Cost: for each batch one fit over the best and the latest points, dimensions^2 for each and
+// dimensions^3 for the solution.
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>

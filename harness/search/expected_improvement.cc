@@ -1,3 +1,17 @@
+// Bayesian optimization: expected improvement of a Gaussian process (Jones, Schonlau and Welch
+// 1998).
+//
+// The surrogate is fitted to the margins seen; invalid starts enter with the worst margin, so
+// that the search keeps away from them. The next point is the candidate with the largest
+// expected improvement over the best margin, times the probability that a start there is valid.
+// Candidates are some points anywhere, some near the best point, some that differ from it in few
+// coordinates, some at the cube's boundary, and then steps of shrinking width from the best
+// candidate. For several points at a time the surrogate takes its own mean for the answer
+// (Ginsbourger et al. 2010). Before the first few points, beyond 200, and where all margins are
+// equal, points come from a Sobol sequence.
+//
+// Cost: one fit for each batch (gaussian_process.cc), some 280 predictions for each point.
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,15 @@
+// Regression by a Gaussian process (Rasmussen and Williams 2006, algorithm 2.1).
+//
+// The covariance of the points is factored once (Cholesky); a prediction is then a product with
+// the weights, and its variance comes from one triangular solve. The overall variance that makes
+// the likelihood greatest is known in closed form; lengths, noise and the weight of the linear
+// part are searched: a small grid at first, then one step up or down along each coordinate, with
+// a prior that keeps the lengths of the dimensions near each other. That is repeated as the
+// number of points has grown by a quarter. A believed value appends one row to the factor, so
+// that several points can be proposed at once.
+//
+// Cost for n points: n^3 for each shape that is tried, n^2 for a prediction or a believed value.
+
 #include "harness/search/gaussian_process.h"
 
 #include <algorithm>

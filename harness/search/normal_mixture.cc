@@ -1,3 +1,16 @@
+// A mixture of normal laws fitted to weighted points by expectation maximization.
+//
+// For one to four parts: centres are drawn far from each other (Arthur and Vassilvitskii 2007),
+// each begins with the spread of the points nearest to it, and some rounds assign points to
+// parts by density and recompute shares, means and covariances. Schwarz's criterion (1978)
+// chooses the number of parts, with the effective number of points. Few points look narrower
+// than the law they come from, so small parts get a wider covariance and weaker correlations; a
+// floor keeps each covariance positive definite, and at the end all deviations are widened by a
+// quarter, as tails that are too short cost more than wide ones. Covariances are kept as
+// Cholesky factors, by which points are drawn and densities found.
+//
+// Cost: at most 15 rounds for each number of parts, each points * parts * dimensions^2.
+
 #include "harness/search/normal_mixture.h"
 
 #include <algorithm>

@@ -1,3 +1,12 @@
+// The strategies of the search take turns.
+//
+// At first space is filled evenly. Then expected improvement, descent, cross-entropy and
+// exploration have one point in four each, and each learns from the points of all. Exploring
+// points come from a Sobol sequence, one in three from near the cube's boundary. A strategy is
+// asked once for all its points of a batch, so that it can spread them. Beyond the number of
+// points that the surrogate can take, descent gets its turns; where margins are constant nothing
+// can be learned and all points explore.
+
 #include <algorithm>
 
 #include "harness/search/strategies.h"

@@ -1,3 +1,17 @@
+// Sobol's sequence (1967), scrambled, without tables.
+//
+// Each dimension has direction numbers from a primitive polynomial over GF(2); point n is the
+// exclusive or of those for the bits of n, and in the order of Gray codes each point differs
+// from the one before by one of them (Antonov and Saleev 1979). The polynomials are found by
+// search: x must have order 2^degree - 1 modulo the polynomial, which is tested at the prime
+// divisors of that number. The first direction numbers are random, but fixed for every sequence,
+// and for up to 32 dimensions are drawn again until the first bits are independent over the
+// dimensions so far (Property A). Random lower triangular matrices and a shift scramble each
+// dimension (Matousek 1998), so that a single point is uniform and every prefix of a power of
+// two keeps its even spread.
+//
+// Cost: dimensions for each point.
+
 #include "harness/search/sobol.h"
 
 #include <algorithm>

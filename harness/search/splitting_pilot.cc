@@ -1,3 +1,15 @@
+// A trial population for splitting.cc that shows where starts below each level lie.
+//
+// Starts are drawn uniformly; again and again the level falls to about the median of the
+// margins, the better half stays, and the others become copies of these that make two moves
+// each, guided by the half that stayed. The starts of each level are kept, as guides of the
+// moves in the counted populations: guides must not depend on the population that they move, or
+// its law would not be kept. The pilot itself is not counted, so its copies need not be
+// independent of each other.
+//
+// Cost: at most the given number of simulations; it ends early when all are discrepancies or
+// alike.
+
 #include "harness/search/splitting_pilot.h"
 
 #include <algorithm>

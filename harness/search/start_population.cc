@@ -1,3 +1,15 @@
+// Moves of a population of starts that keep the uniform law (for splitting).
+//
+// A proposal must be as likely as its way back; then accepting it exactly when it is valid and
+// below the level keeps the law of the starts below that level. Steps along the difference of
+// two guides (ter Braak 2006) take over the shape of where the guides lie, in all or some
+// coordinates; one coordinate drawn anew and normal steps of lengths over three decades,
+// mirrored at the cube's faces, reach the rest. A step along a difference that leaves the cube
+// is mirrored back where the signs of its coordinates are chance, as the way back is then as
+// likely; else it is no move.
+//
+// Cost: dimensions for each proposal.
+
 #include "harness/search/start_population.h"
 
 #include <algorithm>

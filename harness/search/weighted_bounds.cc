@@ -1,3 +1,16 @@
+// Bounds on a probability from weighted draws, valid whenever one looks (Ville 1939;
+// Waudby-Smith and Ramdas 2024).
+//
+// Someone bets on each draw against the claim that the probability is P; under a true claim the
+// wealth has expectation 1 at most, so it ever reaches 1/error with probability `error` at most.
+// The upper bound is the least P refuted. Its wealth is a mixture of three fixed bets; ln(1 + t)
+// >= t - t^2/2 bounds the factors of clean draws from below, so that two sums stand for all of
+// them, and only failures are kept. The lower bound uses the bet that the caller chose before
+// each draw. A lost draw is the worse of both for either bound. Wealth is monotone in P, so both
+// bounds are found by bisection on a logarithmic scale.
+//
+// Cost: a draw is added at once; a bound takes 45 evaluations, linear in the failures.
+
 #include "harness/search/weighted_bounds.h"
 
 #include <algorithm>

@@ -1,3 +1,12 @@
+// A convex polyhedron from its corners and triangles.
+//
+// Planes are turned outwards from the mean of the corners; triangles too thin to have a
+// direction give none. Volume, centroid and moments are sums over the tetrahedra from the origin
+// to each triangle, which is exact for any closed surface. The surface is accepted if each
+// directed edge occurs once and so does its opposite, and if no corner lies outside of a plane
+// by more than rounding. The depth of a point is its least distance below the planes. Cost:
+// linear in the faces, planes times corners for the check.
+
 #include "harness/world/convex_hull.h"
 
 #include <Eigen/Geometry>

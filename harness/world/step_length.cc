@@ -1,3 +1,16 @@
+// Steps of the engine that are so long that something thin may be passed through.
+//
+// In one step a body covers speed times timestep. If that is more than the thickness of the
+// thinnest thing involved, two bodies may change sides without a contact in between. For the
+// speeds of a controller the thinnest is looked for among what the controller moves and all that
+// this may collide with; a rate of turn counts as the speed of the part that is farthest from
+// the axis of the base. A free body may fall from its default place to the highest top below it,
+// or to the floor, and arrives at sqrt(2 g h). Places are compared as boxes round the bodies.
+// The thickness is the least size of a shape, of a hull also the least extent along the normals
+// of its faces.
+//
+// Cost: quadratic in the bodies.
+
 #include "harness/world/step_length.h"
 
 #include <Eigen/Geometry>

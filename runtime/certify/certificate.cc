@@ -1,3 +1,16 @@
+// A proof that a list of traces is complete.
+//
+// The claim is a formula without a model: the clauses of the compiled model and, for each listed
+// trace, one clause that says that some observable is different. With state constraints it also
+// chooses a length at which the trace ends, or that it goes on, and a blocking clause binds its
+// own length. The search for traces can log a DRAT proof as it goes: clauses that define new
+// variables are logged with the new literal first (RAT), and each unsatisfiable call as the
+// clause that its assumptions contradict each other. If the checker does not accept the log, a
+// fresh solver proves the claim. Formula and proof are checked as they are on the disk
+// (drat_checker.cc), so nothing that made them has to be trusted.
+//
+// Cost: linear in the model and in observables times traces, and one proof.
+
 #include "runtime/certify/certificate.h"
 
 #include <fmt/format.h>

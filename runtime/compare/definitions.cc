@@ -1,3 +1,17 @@
+// Which variables of a model are functions of the observed ones, and by which functions.
+//
+// Auxiliaries with a complete definition are conjunctions (Plaisted and Greenbaum 1986) and
+// become known with their last child; unit propagation finds constants. For any other variable
+// and each of its two values there is a candidate: it has the value exactly where one of its
+// clauses, with all other variables known, leaves no choice. A candidate is refuted by a
+// valuation in which the variable has the value although no such clause forces it. One call asks
+// for a valuation that refutes any open candidate, until there is none; those left are forced.
+// If nothing is forced, the variables of the earliest timepoint are declared free, which is
+// never wrong, and the search goes on.
+//
+// Cost: linear for gates and constants; solver calls, some for each timepoint, only if other
+// variables are neither observed nor constant.
+
 #include "runtime/compare/definitions.h"
 
 #include <algorithm>

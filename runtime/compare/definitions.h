@@ -28,7 +28,7 @@ struct Definition {
 /// A function for every variable of a model, such that for all values of the observed variables:
 /// if some values of the others satisfy the model, then some values of the free variables do
 /// together with what the functions give for all others. (Skolem functions; gates are those of
-/// Plaisted and Greenbaum 1986, definability as in Padoa 1900 is decided by the solver.)
+/// Plaisted and Greenbaum 1986, definability as in Padoa 1901 is decided by the solver.)
 struct Definitions {
   std::vector<Definition> of;        // by variable - 1
   std::vector<std::int32_t> order;   // gates, forced and free variables, what they need first

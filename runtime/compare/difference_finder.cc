@@ -1,3 +1,17 @@
+// A trace of one model that another has not, by one solver.
+//
+// "The second model has no trace with these observables" has a quantifier: for all values of its
+// hidden variables some clause is violated. Hidden variables that are functions of the
+// observables (definitions.cc) are put into a circuit over the first model's variables, so that
+// nothing is left to quantify, and one call answers. For the variables that stay free the
+// statement is instantiated on demand: a candidate is verified on the second model, and the
+// valuation that refutes it says which instance to require next (counterexample-guided
+// refinement). After a limit of instances single traces are blocked instead, and then the answer
+// is unknown. The timepoint by which a trace is excluded is found by bisection, since what
+// excludes a prefix excludes all that continue it.
+//
+// Cost: two calls for each refinement, log2 of the horizon for the description of a trace.
+
 #include "runtime/compare/difference_finder.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// "These observables are no trace of the model" as clauses of another model's solver.
+//
+// The model's variables become literals of a shared circuit: observed ones those of the first
+// model, gates and forced variables the functions that define them (definitions.cc), free ones
+// values that the caller requires. A violation literal of a clause implies that all its literals
+// are false; some violation of each requirement has to be true. Clauses that hold by definition,
+// follow from others, or are equal to a clause of the first model cannot be violated and are
+// left out: the call looks only at what the models do not have in common. Violations are grouped
+// by timepoint, so that later ones can be switched off.
+//
+// Cost: linear in the clauses; for each required valuation again in those over free variables.
+
 #include "runtime/compare/refutation.h"
 
 #include <map>

@@ -1,3 +1,16 @@
+// Traces that only one of two models has: a witness for either side, and numbers.
+//
+// A witness comes from difference_finder.cc. It is then improved: as long as some trace is
+// excluded by an earlier timepoint it takes the place, questions that the finder leaves open
+// going to the second model cut to that horizon; among those the one with the fewest shared
+// events before is sought with a counter. The origins that exclude it are shrunk to a minimal
+// set, edited axioms being kept to the last.
+//
+// Numbers: traces are listed up to a limit; beyond it both models are counted by graphs
+// (trace_graph.cc), and the common traces by the product of the graphs: pairs of nodes that the
+// same observations reach, layer by layer, counted backwards. What is lost is the difference.
+// Cost: pairs times their edges, and a few calls for each improvement.
+
 #include "runtime/compare/trace_difference.h"
 
 #include <gmpxx.h>

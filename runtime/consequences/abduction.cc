@@ -1,3 +1,14 @@
+// Least sets of events that explain an observation (Shanahan 1989), by guessing and refuting.
+//
+// One solver finds sets of abducible events that admit the observation, by size: a totalizer
+// bounds their number, and the bound rises by one when no set of the present size is left. A
+// second solver refutes: if exactly these events happen, can the observation fail? If not, the
+// set is an explanation, and all supersets are blocked. If it can, the set only makes the
+// observation possible, and this one set is blocked. As sets come by size, each explanation is
+// minimal among those found.
+//
+// Cost: two calls or so for each candidate; there may be exponentially many candidates.
+
 #include "runtime/consequences/abduction.h"
 
 #include <algorithm>

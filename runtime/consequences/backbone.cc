@@ -1,3 +1,15 @@
+// Which atoms are true in all traces, in some, or in none (Janota, Lynce and Marques-Silva
+// 2015).
+//
+// Each valuation found is evidence: an atom seen true and seen false is settled. One call then
+// asks for a valuation in which any unsettled atom differs from what was seen; such an atom is
+// preferred in the solver, so that many differ at once. When no such valuation exists, all atoms
+// that are left are the same in every trace. With state constraints this is done for each length
+// of traces, and an atom is asked about only in traces that have its timepoint.
+//
+// Cost: at most one call for each atom that is true in some traces only, and two for each
+// length.
+
 #include "runtime/consequences/backbone.h"
 
 #include <algorithm>

@@ -37,7 +37,7 @@ enum class Asked : std::uint8_t {
 /// Asks about HoldsAt and Happens atoms. Every valuation found settles all atoms that differ from
 /// one found before; the solver is then asked to let some other one differ, until it cannot
 /// (Janota, Lynce and Marques-Silva 2015, iterative algorithm with chunks that hold all
-/// candidates). At most one call for each atom that is true in some only, and one for each length
+/// candidates). At most one call for each atom that is true in some only, and two for each length
 /// of traces.
 Consequences find_consequences(SolverSession& session, std::span<const Literal> atoms,
                                Asked asked = Asked::kAllAndSome);

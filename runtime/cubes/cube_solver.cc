@@ -1,3 +1,17 @@
+// Hard questions for several solvers, with the same answer whatever the number of threads.
+//
+// A call is given to one solver for a fixed number of conflicts. If it stays open, the question
+// is split by a literal that makes both halves easier (split_literal.cc) until each lane, a
+// solver of its own, has a cube: literals that it assumes. Lanes work in rounds of a fixed
+// number of conflicts; between rounds they exchange short learned clauses and refuted cubes, and
+// an idle lane takes half of the shortest cube. All clauses follow from the formula alone, so
+// they hold for every lane. Work is counted and not timed, and within a round the first lane
+// with a valuation answers, so threads only change how long it takes. The failed assumptions are
+// the union of those that refuted the cubes.
+//
+// Cost: as that of the solver; its clauses once more, and one solver for each lane after the
+// first hard call.
+
 #include "runtime/cubes/cube_solver.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// The lexicographically first valuation, by asking a solver.
+//
+// Literals are settled in order. One that already has its preferred value keeps it. Of those
+// that have not, a whole block is asked about with one clause: can any of them have it? If not,
+// the block is settled as it is and the next block is twice as long. If so, the block shrinks to
+// a quarter, down to one literal, which then has its preferred value. The valuation at hand is
+// always one under everything settled so far, so each answer is used. Literals that the solver
+// knows to be fixed are not asked about.
+//
+// Cost: a few calls where nothing can be improved; about log2 of the number of literals for each
+// one that can.
+
 #include "runtime/enumerate/canonical.h"
 
 #include <algorithm>

@@ -1,3 +1,14 @@
+// Unit propagation by two watched literals (Moskewicz et al. 2001).
+//
+// A clause is visited only when one of its two watched literals becomes false. It then watches
+// another literal that is not false, or its other watched literal must be true, or it is in
+// conflict. A blocker, some other literal of the clause, often shows without a look at the
+// clause that it is true. Taking values back needs no change of the watches. Clauses lie one
+// behind the other in one array, each ended by a mark, so a clause is a place in it.
+//
+// Cost: for each literal that becomes false, the clauses that watch it, and their literals as
+// far as a new watch is sought.
+
 #include "runtime/enumerate/clause_propagation.h"
 
 #include <algorithm>

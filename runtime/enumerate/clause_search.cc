@@ -1,3 +1,17 @@
+// All valuations of some variables by conflict-driven search, without blocking clauses.
+//
+// Variables are decided in a fixed order, false first, with unit propagation; conflicts teach
+// clauses (first unique implication point, Marques-Silva and Sakallah 1999). After an answer the
+// search returns to the last projected variable that has its other value left. A level whose
+// second value is being searched must not be left by a conflict before that value is exhausted,
+// or answers would be lost: backjumps stop there, and a conflict on the level itself flips the
+// last decision that has a value left (Gebser, Kaufmann and Schaub 2009). Learned clauses follow
+// from the clauses alone, never from earlier answers, so they stay valid for later searches;
+// half of them, those of the most levels, are forgotten now and then (Audemard and Simon 2009).
+//
+// Answers come in lexicographic order, and one costs the same however many came before. Cost:
+// exponential in the worst case; the caller gives a budget of conflicts or assignments.
+
 #include "runtime/enumerate/clause_search.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// Steps of a plan that repeat an attempt and cannot succeed any more.
+//
+// A step is dead if it can be tried after one of its earlier attempts failed, but can never
+// succeed then. `failed at t` is a literal that implies that some earlier attempt failed before
+// t; it is built from t - 1 on along the horizon. Two questions decide: can the step be tried at
+// some t at which an attempt has failed (it has to be), and can it succeed then (it must not)?
+// Implications in one direction are enough, because each question wants its literal true. A
+// question that stays open counts against dead.
+//
+// Cost: two calls for each step with earlier attempts, and for each of them clauses in the
+// horizon times the attempts.
+
 #include "runtime/enumerate/dead_steps.h"
 
 #include <optional>

@@ -1,3 +1,16 @@
+// Three ways to list the traces of a model without constraints.
+//
+// Blocking: each trace is moved to canonical order (canonical.cc) and excluded by a clause for
+// good; the first traces come fast, later ones ever more slowly. Tree: the atoms are cut into
+// levels; at a node, the values of the levels above are assumed, and the values of the next
+// level are found by blocking clauses under a guard that is retired before a child is entered,
+// so that only the blocking clauses of one node are active at a time. A level with more than
+// about a thousand children is halved. Search: clause_search.cc, whose next answer costs the
+// same however many came before, and which gives up by conflicts.
+//
+// The tree and the search list traces in canonical order, and blocking does so if it is asked
+// to.
+
 #include "runtime/enumerate/model_enumerator.h"
 
 #include <algorithm>

@@ -1,3 +1,18 @@
+// Traces that end where the state constraints hold for the first time, shortest first.
+//
+// For each length n the solver assumes "hit at n, no hit before" and finds a valuation; it is
+// moved to the first one in canonical order (canonical.cc): first the key (events and returned
+// objects), then the initial state, then later states, then the plan's free choices. A prefix
+// counts only if the model can continue it to its horizon; prefixes are cheaper to find, so the
+// first is settled and then continued, and the literals that keep it from going on are learned
+// as a clause. A found key is blocked under the guard of its length, which is retired with the
+// length. Two more calls for each trace tell whether other initial states or other outcomes have
+// the same key. After the last length one call asks whether some execution goes on beyond the
+// horizon.
+//
+// Cost: per trace one search for the canonical valuation and a few calls; blocking clauses add
+// up within a length.
+
 #include "runtime/enumerate/plan_enumerator.h"
 
 #include <algorithm>

@@ -1,3 +1,18 @@
+// Minimal sets of axioms that contradict each other.
+//
+// One set is made minimal by leaving out one group after the other; after each success only the
+// groups that the solver used stay. The smallest set comes from the duality of contradictions
+// and corrections (Ignatiev, Previti, Liffiton and Marques-Silva 2015): every contradiction hits
+// each correction, the complement of a maximal consistent set. A smallest hitting set of the
+// corrections so far is either contradictory, and then a smallest contradiction, or consistent,
+// and then it grows and gives a further correction. All minimal sets come from a map of the
+// subsets that are still undecided (Liffiton, Previti, Malik and Marques-Silva 2016): a seed is
+// shrunk to a contradiction, all above which is decided, or grown to a consistent set, all below
+// which is.
+//
+// Both may need exponentially many calls. The clauses of the found set are proved contradictory
+// by a fresh solver whose proof is checked (drat_checker.cc).
+
 #include "runtime/explain/contradiction.h"
 
 #include <algorithm>

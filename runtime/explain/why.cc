@@ -1,3 +1,16 @@
+// Why an atom is true in a trace: a derivation forwards in time.
+//
+// Literals that are true in the trace are derived stage by stage, the state of a timepoint and
+// then its events, by unit propagation over the clauses whose latest atom lies in the stage:
+// nothing is explained by its future. Within a stage, effects come before inertia, stated facts,
+// other axioms and completion. What is still open is a choice, true atoms first. Each literal
+// keeps the one clause that derived it. The chain behind a fact follows these clauses backwards;
+// auxiliaries are replaced by the facts that decided them, and inertia is told once, from the
+// timepoint since which the fact has held. A choice is tested with one solver call: do the
+// choices before it admit the opposite, or is it forced by what comes later?
+//
+// Cost: linear in the clauses, and one call for each choice in the chain.
+
 #include "runtime/explain/why.h"
 
 #include <algorithm>

@@ -1,3 +1,17 @@
+// Exact model counting with component caching (Bayardo and Pehoushek 2000; Sang et al. 2004).
+//
+// Variables are set in a fixed order, false and then true, with unit propagation. After each
+// value the open clauses fall apart into components without a common open variable; their counts
+// are multiplied. A component is known by its open variables and the clauses that are not true
+// yet: the other literals of these clauses are false, so both together determine what is left.
+// Its count is kept under their SHA-256. Variables that tell nothing apart come last in the
+// order; a component of these alone counts 1 as soon as it has one valuation. The k-th valuation
+// is found by setting one variable after the other and counting what is left.
+//
+// By default variables follow time; `reorder` takes the reverse of an elimination order
+// (elimination_order.cc). Cost: exponential in the worst case, so literals looked at, components
+// and memory are limited.
+
 #include "runtime/graph/component_counter.h"
 
 #include <algorithm>

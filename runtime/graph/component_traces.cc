@@ -1,3 +1,13 @@
+// Traces by their numbers, from counts of components (component_counter.cc).
+//
+// Counting first sets variables in the order of time: events determine later states, so states
+// that cannot be reached are never met. If that exceeds its limits, the order of an elimination
+// is tried, in which clauses that look far cost less but unreachable states are counted as well.
+// A trace is then found by setting one observed atom after the other, each by the count of what
+// is left, and a search fills in what tells no traces apart. A trial has limits of some tenths
+// of a second. Cost: for each trace at most two counts for each atom, most of which are
+// remembered.
+
 #include "runtime/graph/component_traces.h"
 
 #include "compiler/base/contract.h"

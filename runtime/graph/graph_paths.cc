@@ -1,3 +1,15 @@
+// Traces in canonical order from a layered graph, without a solver.
+//
+// Edges of a node are in canonical order, so a depth-first walk meets the traces in theirs. Each
+// node knows how many ways it has to the last layer: the walk skips edges without one and thus
+// never turns back in vain. The same numbers find the k-th trace: at each node, edges are passed
+// over and their numbers subtracted from k until the remainder lies within one. Printing keeps
+// the text up to the timepoint at which the next trace leaves the last one, and the text of a
+// step by its two nodes and its events.
+//
+// Cost: at most the edges of the nodes on one path for each trace; for the walk only those
+// behind the place where two traces part.
+
 #include "runtime/graph/graph_paths.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,17 @@
+// Splits the clauses of a model into windows of two neighbouring states and the events between
+// them.
+//
+// The window of a clause follows from its latest variables with a timepoint. Variables without
+// one belong to no window; those that clauses connect form components (union-find), and a
+// component must stay within one window, where it becomes local. If it does not, its variables
+// can be carried: each becomes a hidden slot of every state that no step changes, and the
+// clauses are placed anew. Windows with equal clauses are one. Auxiliaries of a state that are
+// used in one polarity only get a copy in each of the two windows of the state. Hidden slots are
+// those, apart from the observed ones, that one window hands on to the next.
+//
+// Cost: linear in the clauses, for each time that further variables have to be carried (at most
+// 12 of them).
+
 #include "runtime/graph/layered_model.h"
 
 #include <fmt/format.h>

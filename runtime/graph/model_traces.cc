@@ -1,3 +1,17 @@
+// Chooses how the traces of a model are listed.
+//
+// No strategy is best for all models, and which one is shows only when it is tried. A few traces
+// are found by search. If more are wanted, the search begins and is paused after a few
+// milliseconds; then graphs of growing size and the search take turns, each with about the work
+// that the other has done, so the loss against the better one is a constant factor. A search
+// that meets too many conflicts gives way to a graph or a solver: blocking if no trace was found
+// yet, else the tree, which passes over the traces that were given. All list the same traces in
+// canonical order, so the change is not seen. A trace far ahead is sought by a graph or by
+// components, which can count, else by listing.
+//
+// Before a solver is given single states it is asked whether there is any trace at all, which
+// symmetry may make easy.
+
 #include "runtime/graph/model_traces.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// The number of orbits of traces under the symmetries of a model, without listing them.
+//
+// It is the mean, over all symmetries, of the number of traces that a symmetry leaves as they
+// are (Cauchy and Frobenius; Burnside 1911). These are the traces of the model with clauses that
+// make each observed atom equal to its image, and are counted as any model's. If the symmetries
+// are all permutations within sets of constants, conjugate ones leave equally many traces: one
+// of each combination of cycle types is asked and weighted with the size of its class, n! /
+// prod(part^times * times!). Else every symmetry is asked, as a product of one representative
+// from each level of the chain of stabilizers.
+//
+// Cost: one count of traces for each symmetry asked, at most 1000.
+
 #include "runtime/graph/orbit_number.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// States of a layered graph up to the symmetries of its model.
+//
+// From a state and from its image under a symmetry equally many traces go on, so a graph that
+// counts needs one of the two. A generator is a list of moves of bits; it is kept only if it
+// maps fixed values onto themselves and takes every bit of a state to a bit of a state. A state
+// is represented by applying generators as long as one leads to an earlier state (false before
+// true). That ends, as states only get earlier, in a state of the same orbit; an orbit may keep
+// several such states, which costs nodes but never changes the count. Symmetries of the model
+// without its initial state serve all later states.
+//
+// Cost: linear in the bits that generators move, for each improvement.
+
 #include "runtime/graph/state_orbits.h"
 
 #include <algorithm>

@@ -1,3 +1,17 @@
+// Counts the traces of a model, and draws from them uniformly.
+//
+// Several methods count, and none is always the best, so they are tried by rising cost. Where
+// clauses look far a short trial of counting by components comes first (component_counter.cc).
+// Then traces are listed one by one; if there are many, graphs of growing size are tried
+// (trace_graph.cc), between them graphs with one state for each orbit of a symmetry
+// (state_orbits.cc), then components in full; what is left is listed to the end. Each gives the
+// same number.
+//
+// A sample draws numbers below the count, by bits until they are below it, and seeks each of
+// these traces in canonical order. So a seed gives the same traces whatever counted them. Cost:
+// one seek for each different number drawn; without a graph or components all traces are listed
+// twice.
+
 #include "runtime/graph/trace_count.h"
 
 #include <map>

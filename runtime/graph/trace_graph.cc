@@ -1,3 +1,18 @@
+// The traces of a model as the paths of a layered graph, so that cost grows with states and not
+// with traces.
+//
+// A window of clauses ties the state before a step to the events and the state after it
+// (layered_model.cc). A node is an observed state with all valuations of the hidden slots that
+// some trace with the same observations can have (subset construction, Rabin and Scott 1959), so
+// different paths are different traces. Each node is expanded once for each distinct window,
+// whenever it is reached. The ways on are listed by search (clause_search.cc); a window that
+// meets too many conflicts is given to a solver that learns and blocks. Every way on is checked
+// against the clauses of its window. From the last layer backwards each node gets the exact
+// number of its completions, whose sum over the starts is the number of traces.
+//
+// Cost: one enumeration for each node, window and hidden valuation; one addition of big numbers
+// for each edge of each layer. Nodes, edges and conflicts are limited.
+
 #include "runtime/graph/trace_graph.h"
 
 #include <algorithm>

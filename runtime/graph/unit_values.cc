@@ -1,3 +1,11 @@
+// Unit propagation once over a whole model.
+//
+// Each clause counts its literals that are not false yet. When a literal becomes false the
+// clauses that have it, found in one array sorted by literal, are counted down; a clause that
+// comes to one and has no true literal sets its last one. No values are ever taken back, so no
+// watched literals are needed. Linear: each occurrence of a literal is visited once for
+// counting, and the literals of a clause twice more when it becomes unit.
+
 #include "runtime/graph/unit_values.h"
 
 namespace parallax::runtime {

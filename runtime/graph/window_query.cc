@@ -1,3 +1,14 @@
+// All answers to a question about a window: valuations of a projection under assumptions.
+//
+// Our own search (clause_search.cc) enumerates them without blocking clauses, which is fastest
+// for many small questions. A question that takes it more than a limited number of conflicts
+// starts anew in CaDiCaL, and so do all later ones. There each answer is excluded by a clause
+// over the projection; these clauses hang on a guard of the question, which is false afterwards.
+// Every answer is evaluated once on all clauses of the window, whoever found it.
+//
+// Cost: for each answer one pass over the clauses, and what the search for it takes; one more
+// search to know that there are no others.
+
 #include "runtime/graph/window_query.h"
 
 #include <algorithm>

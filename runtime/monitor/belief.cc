@@ -1,3 +1,17 @@
+// The states that a log leaves possible, kept as an exact set.
+//
+// A state is a valuation of the model's state atoms, the place of the plan's control included,
+// and a phase of the windows (step_windows.cc). A reported step replaces the set by all
+// successors under these events (belief_steps.cc), closed under steps of unobserved events; an
+// observation keeps the states that agree. An empty set would mean that no trace fits: the
+// report is refused, and the set before stays. Before the first step observations are collected
+// as long as more initial states agree with them than can be kept, so that a model with very
+// many need not list them. Beyond `max_states` nothing is said any more: a part of the set could
+// refuse wrongly.
+//
+// Cost: for each report a look-up for each state and label, and solver calls for those not met
+// before.
+
 #include "runtime/monitor/belief.h"
 
 #include <fmt/format.h>

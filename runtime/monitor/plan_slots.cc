@@ -1,3 +1,17 @@
+// Makes the atoms of a plan's control slots of the state, so that equal steps have equal
+// clauses.
+//
+// A compiled model has the plan's locations, outcomes and registers at single timepoints as
+// fixed variables. Here each gets a slot in the block of every timepoint; where the model has no
+// such atom the slot is false. An auxiliary may be shared by clauses that bind at different
+// timepoints, so each of these gets a copy of its own with all the definitions it needs.
+// Literals are ordered by their place as the step sees it, auxiliaries by a hash of their
+// meaning, so that the order does not depend on numbers. A clause that binds later than its
+// atoms need gets one more literal, a slot that is false everywhere. Clauses that say where a
+// trace ends are left out.
+//
+// Cost: linear in the clauses and the copies of definitions but for look-ups and sorting.
+
 #include "runtime/monitor/plan_slots.h"
 
 #include <algorithm>

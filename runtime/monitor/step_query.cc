@@ -1,3 +1,17 @@
+// The states that one step leads to, with as few demanded events as possible.
+//
+// A demanded event happens only where axioms force it, so for a given state, given events and
+// each choice of the unobserved ones, the demanded events of a step have to be a subset-minimal
+// set among those possible. One such set is found by taking events out of a possible one as long
+// as a step remains. For the others a tree is searched as for minimal diagnoses (Reiter 1987): a
+// node denies some events, the minimal set found without them has a child for each of its
+// events, which denies that one too. A further minimal set contains no known one, so it lacks an
+// event of each and is met below. Observations of the state after the step are no reasons for
+// events; they select states only after the sets are known.
+//
+// Cost: for each node, one call and one more for each event of the set found. The nodes are
+// limited; beyond that the answer is incomplete.
+
 #include "runtime/monitor/step_query.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// A model and its plan as the clauses of single steps that go on for ever.
+//
+// Control of the plan becomes slots of the state, and all clauses are split into windows of two
+// neighbouring timepoints (layered_model.cc). If the windows before the horizon repeat with some
+// period, which has to be seen twice, they go on behind it: phases are the windows before the
+// repetition and one round of it. Axioms and plan are kept apart and joined for steps that both
+// take, as a step may be one of the model alone while control stands still; definitions belong
+// to both. Values are propagated from the clauses of timepoint 0 only, since a trace may end
+// early.
+//
+// Linear in the clauses; the period takes at most the square of the horizon.
+
 #include "runtime/monitor/step_windows.h"
 
 #include <algorithm>

@@ -1,3 +1,16 @@
+// Bounds on objectives as clauses (generalized totalizer: Joshi, Martins and Manquinho 2015).
+//
+// A sum is a list of literals "at least v", one for each value v that it can have, ascending.
+// Two sums are added by making a literal for each sum of two values, implied in both directions,
+// so that the auxiliaries are functions of the model's variables and traces stay the same. The
+// terms of a timepoint are joined as a balanced tree, and the timepoints one after the other, so
+// the value up to every timepoint can be read off; with state constraints it counts at the hit.
+// Values beyond the bound are merged into one. "Better" is lexicographic: for some objective the
+// value is less, and those before it are no worse.
+//
+// Cost: for two sums of a and b values a * b clauses in each direction; the number of clauses is
+// limited.
+
 #include "runtime/optimize/bounded_model.h"
 
 #include <algorithm>

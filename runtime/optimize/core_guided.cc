@@ -1,3 +1,17 @@
+// The least value of an objective by unsatisfiable cores: OLL (Andres, Kaufmann, Matheis and
+// Schaub 2012; Morgado, Dodaro and Marques-Silva 2014).
+//
+// Every term gives a soft literal whose breaking costs its weight. All soft literals of at least
+// the present level are assumed. If that fails, a core of them cannot be kept together: the
+// lower bound rises by the core's least weight, which its literals lose, and a totalizer counts
+// how many of the core are broken; "at most one" becomes a soft literal with that weight, and
+// later "at most two", and so on. If it succeeds, the trace found is an upper bound; soft
+// literals heavier than the gap are required for good, the cores found at this level are
+// counted, and the level falls (stratification: Ansotegui, Bonet, Gabas and Levy 2012). The
+// search ends where both bounds meet.
+//
+// Cost: a call for each core and level; cores are shortened within a fixed number of conflicts.
+
 #include "runtime/optimize/core_guided.h"
 
 #include <algorithm>

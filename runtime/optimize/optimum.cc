@@ -1,3 +1,15 @@
+// The lexicographically least values of several objectives.
+//
+// For one length of traces the objectives are minimized one after the other by cores
+// (core_guided.cc); each settled value is required from then on, so it binds the later ones.
+// With state constraints lengths are searched in turn, each only as far as it can beat the best
+// values so far: while a length is equal to them in the objectives before, the next one must be
+// no worse, and the last one better. So among equally good traces the shortest stays. If the
+// solver is stopped, the best trace found is kept, and the bound is the least that any length
+// still allows.
+//
+// Cost: that of the core-guided search, for each objective and length.
+
 #include "runtime/optimize/optimum.h"
 
 #include <algorithm>

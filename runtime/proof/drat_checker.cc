@@ -1,3 +1,16 @@
+// Checks a DRAT refutation forwards, one step at a time (Wetzler, Heule and Hunt 2014).
+//
+// A clause that is added must follow: with all its literals false, unit propagation meets a
+// conflict (RUP), or it does so for each resolvent on the first literal with a clause that has
+// the complement (RAT). Adding a RAT clause may lose models but never the last one, so a
+// contradiction at the end means that the formula has none. Assignments that follow from units
+// are permanent. A deletion of a clause that supports one of them is ignored, as more clauses
+// refute no less; every step is checked against exactly the clauses that are held. After a
+// contradiction all further steps are right and need only be well-formed.
+//
+// Cost: one propagation for a RUP step; a RAT step looks at all clauses, unless the complement
+// never occurred.
+
 #include "runtime/proof/drat_checker.h"
 
 #include <fmt/format.h>

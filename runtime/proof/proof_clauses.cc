@@ -1,3 +1,12 @@
+// Clauses of a proof, and unit propagation that prefers those that proofs use.
+//
+// All clauses lie in one array of words; a hash over the literals, in any order, finds one for
+// deletion, and the array is compacted when more than half of it is deleted. Propagation watches
+// two literals of each clause. Clauses that took part in a conflict are marked as core and
+// watched in lists of their own; the trail is first propagated over these lists and only then
+// over the others (core-first propagation, as in drat-trim: Wetzler, Heule and Hunt 2014). So
+// most checks touch few clauses. It shares no code with the solvers whose proofs it checks.
+
 #include "runtime/proof/proof_clauses.h"
 
 #include <algorithm>

@@ -1,3 +1,18 @@
+// Is a trace that somebody claims one of a model? One solver call, and more only if not.
+//
+// The claims become assumptions, one literal for each atom that the trace gives a value; atoms
+// that it does not mention stay open and are completed by the solver. The state constraints have
+// to hold at the end and not before. A trace has to be the beginning of a valuation of the whole
+// horizon, so a second call asks for that. If one of them fails, prefixes are tried from the
+// shortest on: the first timepoint up to which no trace agrees is where the claims go wrong. If
+// no prefix fails, the constraints hold too early, or not at the end. An atom that has no
+// variable is false in every trace, so a claim that it is true fails at its timepoint unless
+// something fails earlier. For an explanation the claims are added as clauses that are always
+// kept, and a core of the axioms is taken.
+//
+// Cost: two calls for a trace that agrees, up to two for each timepoint of the horizon for
+// others.
+
 #include "runtime/replay/trace_replay.h"
 
 namespace parallax::runtime {

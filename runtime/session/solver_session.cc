@@ -1,3 +1,17 @@
+// One solver for all horizons of a model, by guards.
+//
+// Each clause carries the negated guard of its timepoint, the latest that its atoms mention; a
+// call with horizon n assumes the guards 1 to n and drops the others. Learned clauses contain
+// the guards that they rest on, so they survive from one horizon to the next. The clauses of a
+// timepoint are handed over with the first call that needs them; while a caller simulates a
+// trace the solver waits. A trace that ends at n is the beginning of a valuation of the whole
+// horizon (solve_whole): the clauses of a plan and of objectives have guards of their own and
+// bind up to n only, and the call for the whole horizon comes second, after one that needs the
+// clauses up to n alone, refutes most of what can be refuted and orders what is left.
+//
+// A core is shrunk by deletion: a member that is not needed goes, with all that the solver did
+// not use without it. Cost: one call for each member of the first core.
+
 #include "runtime/session/solver_session.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// Colour refinement of the constants of a model (Weisfeiler and Leman 1968, one-dimensional).
+//
+// In each round a clause gets a colour from those of its atoms, an atom from its clauses and the
+// constants in its name, and a constant from the atoms that name it. Sums of hashes forget
+// orders, as a symmetry may. A colour depends on the one before it, so what is told apart stays
+// so, and the refinement ends with the first round that makes no more colours. Marked constants
+// begin with colours of their own. Constants of different colours are exchanged by no symmetry,
+// but for a collision of 64-bit hashes; equal colours promise nothing.
+//
+// Cost: each round is linear in the literals; there are at most as many rounds as atoms and
+// constants.
+
 #include "runtime/symmetry/constant_colours.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// The symmetries of a model that permute constants.
+//
+// First pairs: two constants are exchangeable if the exchange maps the clauses onto themselves
+// (permutation_check.cc). Exchanging is transitive, so a constant is compared with one member of
+// each set, and only of sets with the same signature, a hash that an exchange keeps. Neighbours
+// of a set generate all its permutations. If constants of different sets have the same
+// signature, symmetries that move several at once may exist, and are searched for
+// (symmetry_search.cc). Each generator was checked exactly; with a bounded effort some may be
+// missing, which weakens what uses them but is never wrong.
+//
+// Cost: one check for each constant and set of its signature.
+
 #include "runtime/symmetry/interchangeable.h"
 
 #include <algorithm>

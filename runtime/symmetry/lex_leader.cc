@@ -1,3 +1,16 @@
+// Symmetry-breaking clauses (Crawford, Ginsberg, Luks and Roy 1996).
+//
+// For each generator g a valuation must not come after its image under g, in one fixed order of
+// the variables. The first valuation of an orbit comes before all its images, so it survives any
+// set of such clauses. "Not after" is a chain along the pairs (v, g(v)) in order (Aloul,
+// Sakallah and Markov 2003): while all pairs before are equal, v implies g(v), and where that
+// holds with equality the next pair is compared. The auxiliary "equal so far" is needed in one
+// direction only. Pairs that are equal because of pairs before them, and pairs with one settled
+// value, are left out. The clauses are added block by block, as far as a caller needs them;
+// leaving some out is never wrong.
+//
+// Cost: three clauses and one variable for each pair of a generator.
+
 #include "runtime/symmetry/lex_leader.h"
 
 #include <algorithm>

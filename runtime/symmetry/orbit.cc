@@ -1,3 +1,17 @@
+// Canonical form of a trace under a group of permutations of its constants (McKay 1981; Linton
+// 2004).
+//
+// A trace is a graph: constants are vertices, true atoms are edges coloured by their kind and
+// timepoint. A node of the search tree has chosen which constants go to the bases of the first
+// levels of the chain of stabilizers; the colours of the others are refined by their edges and
+// by the group's orbits. Only constants of the least colour are candidates for the next base. At
+// a leaf all constants have their places and the graph can be written down; the least text is
+// the form. Candidates that an automorphism of the graph takes to each other have equal
+// subtrees, so one is followed for all, and the numbers of such candidates multiply to the
+// number of automorphisms. The orbit's size is the group's order divided by it.
+//
+// Cost: exponential in the worst case; a few refinements where colours tell the constants apart.
+
 #include "runtime/symmetry/orbit.h"
 
 #include <algorithm>

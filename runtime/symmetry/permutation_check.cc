@@ -1,3 +1,15 @@
+// Does a permutation of constants map the clauses of a model onto themselves?
+//
+// Names are mapped by replacing constants; facts about moved constants are compared first, as
+// they refute most candidates. Auxiliaries have no names: in the order in which they are defined
+// by each other, each is mapped to the one whose definitions have the hash of the mapped
+// definitions. Then every clause that mentions a moved node has to have its image among the
+// clauses, found by a hash that does not depend on the order of literals and compared literal by
+// literal. So a collision of hashes can hide a symmetry but not make one. Clauses that hold at
+// every timepoint are looked at once; invariants follow from the rest and are left out.
+//
+// Cost: linear in the clauses that mention a moved constant or an auxiliary over it.
+
 #include "runtime/symmetry/permutation_check.h"
 
 #include <algorithm>

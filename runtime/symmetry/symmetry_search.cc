@@ -1,3 +1,20 @@
+// Symmetries that exchange several constants at once, by individualization and refinement (McKay
+// 1981).
+//
+// Colour refinement (constant_colours.cc) splits the constants into cells; no symmetry leaves a
+// cell. A base is a constant of a cell that exchanges of two constants do not explain; it is
+// told apart and the colours are refined again, until all cells are explained. From the last
+// base to the first, each constant of the base's cell is tried as its image, the bases before it
+// being fixed: source and target are refined side by side, branching on further cells, until the
+// map is complete and is checked on the clauses (permutation_check.cc). Images that known
+// permutations already reach, and those in the orbit of a refuted one, are not tried. The
+// permutations found, with the exchanges, generate the group as a chain of stabilizers: each
+// level has the orbit of its base and a permutation to each member, so the order is the product
+// of the orbits' sizes.
+//
+// Cost: exponential in the worst case; refinements, checks and memory have fixed budgets, beyond
+// which only the exchanges are kept.
+
 #include "runtime/symmetry/symmetry_search.h"
 
 #include <algorithm>

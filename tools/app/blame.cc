@@ -1,3 +1,18 @@
+// The first step at which model and simulation part, and the axioms to blame for each fluent.
+//
+// Up to the step before, the model admits what was observed. At the step, the axioms are groups
+// of clauses, and so is each observed value, its opposite, and the outcome of the perform. A
+// fluent differs if its value contradicts all axioms with the earlier observations; what is
+// blamed is an unsatisfiable core, shrunk until every group in it is needed. Cores from the
+// axioms about this step alone are preferred to those that go through inertia. If no fluent
+// differs by itself, the values contradict the model together, or only with the outcome, and a
+// core names those that are needed.
+//
+// Differences are ordered: effects of the action first, what should hold and does not before
+// what should not and does, then by the size of the core. One that follows from the first by
+// axioms about single states is told as its consequence. Cost: a few solver calls for each
+// fluent, and one for each group of a core.
+
 #include "tools/app/blame.h"
 
 #include <algorithm>

@@ -1,3 +1,12 @@
+// Finds the parts of a plan that a trace has gone through.
+//
+// A trace names the performs and how they ended, but not the branches between them. All ways of
+// the graph from one perform to the next are listed, guards that the trace decides taking one
+// side only; the decisions that all of these ways share are certain, and only they count as
+// covered. A handler is covered by a failed perform that it takes up, a retry by a perform
+// behind the failure of the same form and event. Cost: the ways between two performs, of which
+// at most 256 are looked at; beyond that nothing counts.
+
 #include "tools/app/coverage_plan.h"
 
 #include <fmt/format.h>

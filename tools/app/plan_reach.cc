@@ -1,3 +1,16 @@
+// Finds traces that together go every way of a plan that any trace can go.
+//
+// A way leads from one perform and its outcome through branches to the next perform. For each
+// length there is a literal for each way still wanted, which implies its two performs, the
+// outcome and the free choices; one call asks for a trace with any of them. An answer covers all
+// that its whole path covers, and what is covered is asked for no more. Guards are not part of
+// the literals, so an answer may take another way between the same performs. Then a clause
+// demands that something which the deciding guard read has another value, and the question is
+// repeated (refinement by counterexamples). After a limited number of these a way is given up.
+//
+// Cost: for each length one call for each answer and one more; ways are limited for each outcome
+// of a perform, since there may be exponentially many in the branches.
+
 #include "tools/app/plan_reach.h"
 
 #include <algorithm>

@@ -1,3 +1,11 @@
+// Two sets of traces by their differences.
+//
+// A set becomes a tree of its prefixes: a node's children are the events and the state of the
+// next step, by name, as the files need not share ids. A trace of the other set is followed
+// down; where it has no child it leaves the set, and a trace that only ends elsewhere leaves it
+// at its last timepoint. The witness is the trace that leaves earliest, with the fewest events
+// before that. Cost: the size of both sets, times the logarithm of the children at a node.
+
 #include "tools/diff/trace_set.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,12 @@
+// The revision that changed the verdict of a scenario, by bisection.
+//
+// Both ends are run first; only if their verdicts differ is there something to look for. Then
+// `git bisect` chooses revisions and is told good, bad or skip for each; revisions without a
+// verdict are skipped, and if only such are left between the verdicts all of them are named. It
+// works in a temporary repository that borrows the user's objects, so that the user's checkout,
+// refs and settings are never touched, and each revision runs in a process of its own. Cost:
+// about log2 of the revisions in runs of the scenario.
+
 #include "tools/history/bisect.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,12 @@
+// Changes in the history of a suite, with one bound on false alarms over all time.
+//
+// Outcomes and cases are compared line by line. A rate is compared with the first measurement
+// since its last change, by Fisher's exact test of two sides; comparing with the reference and
+// not with the line before finds slow changes, too. Each line is a look: look k may spend
+// 6/(pi^2 k^2) of the error, whose sum is the whole, shared by the comparisons that the line
+// makes (Bonferroni). The share depends on this line and earlier ones alone, so a change that
+// was named stays named. Cost: one test for each rate and line.
+
 #include "tools/history/change_points.h"
 
 #include <fmt/format.h>

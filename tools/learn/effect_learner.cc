@@ -1,3 +1,17 @@
+// Learns from all observed steps at once which fluents events begin, end and leave open.
+//
+// For each event and inertial fluent there are three kinds of rules that compete for the same
+// outcomes: openings (chance decides, opening_search.cc), and what the event initiates and
+// terminates (rule_search.cc). An account is a set of openings with the effects that explain the
+// rest, and its length the bits of the rules and of the outcomes left open; an outcome that
+// nothing explains costs much. The shortest account over several prices of openings is taken and
+// its openings are narrowed as long as it gets shorter. Outcomes that no rule explains become
+// open themselves, and it begins again. Refusals come first; outcomes of one chance are tied at
+// the end (outcome_ties.cc).
+//
+// It ends, since each round opens at least one more example. Cost: that of the searches, some
+// for each round.
+
 #include "tools/learn/effect_learner.h"
 
 #include <fmt/format.h>

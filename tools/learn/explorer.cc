@@ -1,3 +1,14 @@
+// Random sequences of a plan's events, simulated from random initial states of the model.
+//
+// Every second sequence repeats the beginning of a run that is known, of random length, so that
+// states far from the start are reached too; a few random events follow. Events are those that
+// the plan performs, with its arguments, and all other instances of their symbols that can be
+// called without arguments of a plan. Draws come from a counter-based generator keyed by the
+// seed and the number of the sequence, so a sequence does not depend on those before it. A
+// sequence that cannot be simulated is skipped with a remark.
+//
+// Cost: one simulation for each sequence; events are limited.
+
 #include "tools/learn/explorer.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,17 @@
+// Learns a model of a scenario's actions from simulations, in rounds.
+//
+// A round runs the scenario's plan, random sequences of its events (explorer.cc) or the traces
+// of the learned model, adds what was observed and learns all rules about events anew from all
+// runs (taught_model.cc). Rounds go on while they teach something. The model is good when a
+// campaign with it ends without a discrepancy, gives a claim and leaves all axioms as they were;
+// for a scenario in open loop the traces of the model have to pass such a campaign as well,
+// unless the model leaves outcomes open. A clean run may still make another model the simplest
+// one, so the first clean rounds are learned from; later ones only confirm.
+//
+// It ends early when a discrepancy changes no axiom, because then axioms about events cannot say
+// what was observed, or when the budget of simulations or rounds is used up. Cost: one campaign
+// and one run of the learner for each round.
+
 #include "tools/learn/learn.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,15 @@
+// Where outcomes are left to chance, by the shortest description of all observations.
+//
+// An example is a state and an event with how often the fluent was true and false afterwards;
+// open ones went both ways. A rule that covers examples costs its length and the bits that tell
+// which way they went each time; examples that it leaves out cost what other axioms need for
+// them, at most `most_outside`. So a rule is as general as the runs allow, and is replaced by a
+// longer condition once enough runs have shown that it covers too much. From an open example
+// that no rule covers, facts that held there are joined by a beam search. How much other axioms
+// may cost is not known before, so some values are tried, and the whole description decides.
+//
+// Cost: for each seed, head and length the beam times the facts, each linear in the examples.
+
 #include "tools/learn/opening_search.h"
 
 #include <algorithm>

@@ -1,3 +1,17 @@
+// Open outcomes of one event that one chance decides.
+//
+// A tie says that an outcome of the second rule goes as one of the first, or opposite to it,
+// when their variables agree; candidates are all ways to identify variables, the more general
+// first. A step in which both outcomes are known and do not agree refutes a candidate. The bits
+// that need not be told, because the second outcomes follow from the first, are what a tie
+// saves; it has to save more than it takes to name one of the candidates, so that a coincidence
+// of few runs ties nothing. The best tie is taken, its outcomes count as told, and the search
+// goes on (greedy). If the outcomes that do not follow all went one way, the second opening is
+// narrowed to where the first applies.
+//
+// Cost: candidates times steps times pairs of outcomes, for each tie; candidates are limited to
+// 4096.
+
 #include "tools/learn/outcome_ties.h"
 
 #include <algorithm>

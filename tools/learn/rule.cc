@@ -1,3 +1,14 @@
+// Values of a rule's conditions in states that are partly known, and rules as text.
+//
+// A condition has three values. Its own variables are existential: values for them are tried by
+// backtracking, each variable when the first literal that mentions it is reached, over the
+// constants of its sort. A false literal ends a branch, a branch that is true ends the search;
+// if all branches fail but some are unknown the condition is unknown. For many examples at once
+// the value is remembered by the state and the head variables that the condition mentions, since
+// it depends on nothing else.
+//
+// Cost: the product of the domains of the condition's own variables, for each different key.
+
 #include "tools/learn/rule.h"
 
 #include <algorithm>

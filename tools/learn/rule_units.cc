@@ -1,3 +1,17 @@
+// Conditions that a rule may be made of: those that hold in one step, cheapest first.
+//
+// The head of the rule has variables, and the step binds them to constants. Units are equations
+// between head variables and literals whose places take head variables or variables of their
+// own; each gets the sign under which it holds in the state before the step. Later stages add
+// conjunctions of two facts of the state, then constants as places, then conjunctions of three
+// facts. Constants of joined facts become variables unless they are the head's, and only facts
+// that such variables connect are joined, because others say no more than separate units. The
+// cost of a unit grows with its literals, its own variables, its constants and a negation, and a
+// literal without a head variable costs more.
+//
+// Cost: for each symbol the product of its places' choices, and the cube of the facts that are
+// joined; all of them are limited.
+
 #include "tools/learn/rule_units.h"
 
 #include <algorithm>

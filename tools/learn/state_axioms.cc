@@ -1,3 +1,16 @@
+// The user's formulas about states, as far as runs confirm them.
+//
+// Each formula, and each half of a definition, stands in one compiled model behind a predicate,
+// so that an incremental solver can tell which states a selection of formulas admits. As long as
+// some state that was seen is excluded: each single formula without which a state becomes
+// possible gets its vote, and the one with most votes is dropped; if a state needs several
+// dropped at once, a minimal set of them is. For a wrong half of a definition, exceptions are
+// learned from the states in which the definition decides the fluent by itself
+// (opening_search.cc), and the half is weakened by them. Exceptions that exclude a seen state
+// together with the rest lose their certainty.
+//
+// Cost: a solver call for each state and formula, for each formula that is dropped.
+
 #include "tools/learn/state_axioms.h"
 
 #include <fmt/format.h>

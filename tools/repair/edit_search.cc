@@ -1,3 +1,17 @@
+// Smallest sets of edits with which a model admits what was seen.
+//
+// One compiled model has all edits in it, each behind a predicate that the text leaves open;
+// their selectors are shared by one incremental solver. For each way that runs went there is a
+// copy of the clauses in which its events and states are facts. Unit propagation of the facts
+// settles nearly everything but the edits, satisfied clauses go, and variables that occur in one
+// sign only are set (pure literals), so a copy is small. An edit that a copy excludes is
+// excluded only where that copy counts. A sequential counter bounds the number of selected edits
+// (Sinz 2005); a found set blocks itself and its supersets, so by rising size each set is
+// minimal.
+//
+// Cost: linear in the model for each way that runs went; one call for each set found and one
+// more for each size.
+
 #include "tools/repair/edit_search.h"
 
 #include <algorithm>

@@ -1,3 +1,13 @@
+// Simulations that tell proposals apart, chosen one after the other.
+//
+// While several proposals are supported by the runs as much as the first one, the trace that
+// separates most pairs of their models is simulated, recorded, and the repair proposes again
+// with it. It ends when no two can be told apart, no run tells them apart, or the budget is used
+// up; the reason is told. Where chance may decide, steps that failed once are repeated first: if
+// the event can also go well, a proposal that it always fails is wrong. Proposals that vanish
+// are verified once more, to tell refuted ones from those that others crowded out. Cost: one
+// repair for each experiment.
+
 #include "tools/repair/experiments.h"
 
 #include <fmt/format.h>

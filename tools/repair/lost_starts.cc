@@ -1,3 +1,14 @@
+// Initial states that a repair takes from a model, by enumeration up to a limit.
+//
+// One solver has the model before the repair and gives one initial state after the other that
+// leads to the constraints at some timepoint; each is then excluded by a clause. A second solver
+// has the repaired model and is asked about each of them under assumptions. A state of which it
+// finds no trace is lost. Both search the lengths of traces from the shortest on, since a state
+// that leads there soon needs no more. If there are more states than the limit the result says
+// so and is a sample of them.
+//
+// Cost: for each state at most two calls for each timepoint of the horizon.
+
 #include "tools/repair/lost_starts.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// Smallest sets of edits of a plan that help.
+//
+// The plan is compiled once with all candidate edits in it, each guarded by a fluent of its own;
+// edits that make the text wrong are found by the places of the messages, left out, and the rest
+// is compiled again. The facts are those of the run that went wrong, up to its failure if the
+// plan is to handle it, else of its start. By rising number of edits, bounded by a sequential
+// counter (Sinz 2005), and by rising length of the execution, the solver looks for one that
+// reaches the goal; sets that were found, and supersets, are excluded. If it goes well without
+// any edit there is nothing to look for.
+//
+// Cost: one call for each size and length, and one for each set found.
+
 #include "tools/repair/plan_search.h"
 
 #include <fmt/format.h>

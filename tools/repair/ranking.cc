@@ -1,3 +1,13 @@
+// The order of proposals.
+//
+// Proposals that admit the runs are ordered by size, then precautions before splits of the start
+// before other changes, then specific ones before those that let anything happen, then by the
+// runs that they admit to their end, and at last by oddity. Only the first few have their traces
+// compared with the model's: among equals the change that permits the fewest new traces comes
+// first, then the one that forbids the fewest. Neighbours that the order cannot distinguish are
+// tied, which is told. Proposals as well founded as the first one that admit fewer runs to their
+// end were refuted by experiments and are dropped.
+
 #include "tools/repair/ranking.h"
 
 #include <algorithm>

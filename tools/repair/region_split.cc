@@ -1,3 +1,15 @@
+// Proposals that split the start region where one or two parameters tell failures from clean
+// runs.
+//
+// For each step at which runs left the model, the runs that came to it in the same way are
+// compared with those that went on well; the cause of the difference is told by tell_cause
+// (harness/cause), helped by borders that `confirm` found. If it is a part of the region, each
+// border becomes a fluent of the start, and inside the part the event gets the effects that were
+// observed. The new text is verified against all runs, each with the half that it began in.
+// Clean runs inside the part are set aside as a precaution, failures outside of it remain, and
+// both numbers are told. The effect on traces is compared with a model that has the new fluents
+// but not the new effects.
+
 #include "tools/repair/region_split.h"
 
 #include <fmt/format.h>

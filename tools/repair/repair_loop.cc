@@ -1,3 +1,13 @@
+// Repair in rounds: propose, apply the best change, run again, until nothing is wrong.
+//
+// Each round repairs the last run's folder and takes its first proposal, if it is the only one
+// of its rank; a tie ends the loop, as a choice is the user's. A proposal has to explain the
+// runs of all earlier rounds as well, so rounds cannot undo each other. Changes are made in
+// copies of the files that the scenario reads; the user's files are only read. The next campaign
+// draws with another seed, since the starts of the repair are clean by construction. It ends
+// clean only if no initial state has lost its way to the constraints: a model that admits
+// nothing would be clean as well. Cost: one repair and one campaign for each round.
+
 #include "tools/repair/repair_loop.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,11 @@
+// Order in which the cases of a suite are started.
+//
+// Cases with unknown time come first, then the longest (longest processing time first, Graham
+// 1969), so that no long one is left for the end. A thread takes the first waiting case that the
+// memory in use leaves room for; smaller cases may overtake one that has to wait. A case that
+// needs more than all the memory runs when nothing else does. Cost: linear in the waiting cases
+// for each start.
+
 #include "tools/suite/schedule.h"
 
 #include <algorithm>
