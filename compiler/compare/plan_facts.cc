@@ -18,6 +18,7 @@
 #include <tuple>
 #include <utility>
 
+#include "compiler/base/words.h"
 #include "compiler/plan/binding_text.h"
 
 namespace parallax::compiler {
@@ -34,19 +35,6 @@ FactPlace place_of(const base::SourceRange& range, const base::SourceFiles& file
 
 std::string shortened(std::string text) {
   return text.size() <= kMaxFormShown ? text : text.substr(0, kMaxFormShown) + "...";
-}
-
-/// With single blanks, as its author wrote it otherwise.
-std::string one_line(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r\n";
-  std::string out;
-  for (std::size_t at = 0; (at = text.find_first_not_of(kBlanks, at)) != std::string_view::npos;) {
-    const auto end = std::min(text.find_first_of(kBlanks, at), text.size());
-    if (!out.empty()) out += ' ';
-    out += text.substr(at, end - at);
-    at = end;
-  }
-  return out;
 }
 
 /// "(def-cram-function fetch-box" of a definition, else empty.
@@ -334,7 +322,8 @@ std::vector<Fact> binding_facts(base::FileId file, const base::SourceFiles& file
     const auto arrow = text.find(" - >");
     const auto key = arrow == std::string::npos ? text : text.substr(0, arrow);
     const auto line = files[file].position(static_cast<std::uint32_t>(begin)).line;
-    facts.push_back({FactKind::kAxiom, key, text, one_line(entry), {files[file].name(), line}});
+    facts.push_back(
+        {FactKind::kAxiom, key, text, base::one_line(entry), {files[file].name(), line}});
   }
   return facts;
 }

@@ -9,6 +9,7 @@
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
+#include "compiler/base/words.h"
 #include "harness/campaign/judge.h"
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/criterion.h"
@@ -102,8 +103,8 @@ void set_anytime_interval(CauseRate& rate, std::int64_t runs, std::int64_t unsee
 
 std::string unseen_text(std::int64_t unseen) {
   return fmt::format("{} not seen to {} end: the intervals allow for whatever {} would have shown",
-                     unseen == 1 ? "1 run was" : fmt::format("{} runs were", unseen),
-                     unseen == 1 ? "its" : "their", unseen == 1 ? "it" : "they");
+                     base::counted(unseen, "run was", "runs were"),
+                     base::agreed(unseen, "its", "their"), base::agreed(unseen, "it", "they"));
 }
 
 void count_loss(const SampleRecord& record, TraceResult& result) {
@@ -134,13 +135,12 @@ void add_loss_caveats(TraceResult& result) {
     result.caveats.push_back(fmt::format(
         "{} not counted as a discrepancy but as lost, because the solver made up what it showed: "
         "{}",
-        result.of_the_solver == 1 ? "1 run is" : fmt::format("{} runs are", result.of_the_solver),
-        result.first_of_the_solver));
+        base::counted(result.of_the_solver, "run is", "runs are"), result.first_of_the_solver));
   }
   if (result.retried > 0) {
-    result.caveats.push_back(fmt::format(
-        "{} lost at first and observed when repeated with the same start and seed",
-        result.retried == 1 ? "1 run was" : fmt::format("{} runs were", result.retried)));
+    result.caveats.push_back(
+        fmt::format("{} lost at first and observed when repeated with the same start and seed",
+                    base::counted(result.retried, "run was", "runs were")));
   }
   if (result.strayed > 0) {
     result.caveats.push_back(fmt::format(

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "compiler/base/words.h"
 #include "harness/report/report_words.h"
 #include "harness/report/text_layout.h"
 
@@ -65,7 +66,7 @@ class Account {
       text = fmt::format("{} {} is {}, and the model says {}", when(), first.fluent, first.observed,
                          first.predicted);
       if (const auto more = static_cast<std::int64_t>(differing.size()) - 1; more > 0) {
-        text += fmt::format(" ({})", counted(more, "other fluent differs", "others differ"));
+        text += fmt::format(" ({})", base::counted(more, "other fluent differs", "others differ"));
       }
     }
     if (found_.kind == DiscrepancyKind::kTransient) text += "; it ends as predicted";
@@ -168,7 +169,7 @@ class Account {
     const auto left_out = [&](std::size_t count, std::string_view where) {
       if (count == 0) return;
       out += fmt::format("     {} {}\n",
-                         counted(static_cast<std::int64_t>(count), "event", "events"), where);
+                         base::counted(static_cast<std::int64_t>(count), "event", "events"), where);
     };
     left_out(first, "before");
     std::vector<std::vector<std::string>> rows;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "compiler/base/json.h"
+#include "compiler/base/words.h"
 #include "harness/confidence/rounding.h"
 #include "harness/report/report_words.h"
 
@@ -19,7 +20,9 @@ std::string name_of(const std::string& simulator) {
 
 std::string cause_sentence(const SecondOpinion& opinion, const CauseOpinion& of) {
   const auto first = name_of(opinion.first), other = name_of(opinion.other);
-  const auto runs = [](std::int64_t count) { return counted(count, "simulation", "simulations"); };
+  const auto runs = [](std::int64_t count) {
+    return base::counted(count, "simulation", "simulations");
+  };
   std::string text;
   switch (of.doubt()) {
     case CauseOpinion::Doubt::kModel:
@@ -61,7 +64,7 @@ std::string clean_sentence(const SecondOpinion& opinion) {
   if (all == 0)
     return fmt::format("no simulation was clean in {}: nothing is said of those", first);
   auto text = fmt::format("of {} clean in {}, {} clean in {}",
-                          counted(all, "simulation", "simulations"), first, clean, other);
+                          base::counted(all, "simulation", "simulations"), first, clean, other);
   if (parted > 0) {
     text += fmt::format(", {} discrepancies of {} alone", parted, other);
     const auto at = std::find_if(

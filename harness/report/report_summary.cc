@@ -7,6 +7,7 @@
 
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/utf8.h"
+#include "compiler/base/words.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/family.h"
 #include "harness/confidence/rounding.h"
@@ -106,9 +107,10 @@ class Summary {
     if (open == 0) return "nothing differs so far, and there are more traces than a limit admits";
     const auto& first = result_.traces.front();
     if (first.loop && first.loop->unfinished > 0) {
-      return fmt::format("{} (of the first: {})",
-                         counted(first.loop->unfinished, "run did not end", "runs did not end"),
-                         first.loop->why_unfinished);
+      return fmt::format(
+          "{} (of the first: {})",
+          base::counted(first.loop->unfinished, "run did not end", "runs did not end"),
+          first.loop->why_unfinished);
     }
     if (first.loop && first.loop->cover && first.loop->cover->end == CoverResult::End::kRunLimit) {
       return fmt::format("max_runs came before what was not shown is rarer than {}",
@@ -117,7 +119,7 @@ class Summary {
     if (first.loop) return "there were fewer runs than the criterion asks for";
     return fmt::format(
         "{} of {} had fewer runs than the criterion asks for", open,
-        counted(static_cast<std::int64_t>(result_.traces.size()), "trace", "traces"));
+        base::counted(static_cast<std::int64_t>(result_.traces.size()), "trace", "traces"));
   }
 
   /// With --keep-going: a line each.
@@ -217,12 +219,13 @@ class Summary {
     for (const auto& path : loop.paths) ends[end_of(path.end, path.detail)] += path.runs;
     std::vector<std::string> parts;
     for (const auto& [end, runs] : ends) {
-      parts.push_back(fmt::format("{} in {}", end, counted(runs, "run", "runs")));
+      parts.push_back(fmt::format("{} in {}", end, base::counted(runs, "run", "runs")));
     }
-    line("paths", fmt::format("{} from {}: {}",
-                              counted(static_cast<std::int64_t>(loop.paths.size()), "way", "ways"),
-                              counted(loop.initial_states, "start state", "start states"),
-                              fmt::join(parts, "; ")));
+    line("paths",
+         fmt::format("{} from {}: {}",
+                     base::counted(static_cast<std::int64_t>(loop.paths.size()), "way", "ways"),
+                     base::counted(loop.initial_states, "start state", "start states"),
+                     fmt::join(parts, "; ")));
   }
 
   /// Reports the items shown by runs that go on until everything was shown.
@@ -285,12 +288,12 @@ class Summary {
     if (!result_.title.empty()) text += ": " + result_.title;
     line("scenario", text);
     const auto& simulator = result_.simulator;
-    text = counted(result_.simulations, "simulation", "simulations");
+    text = base::counted(result_.simulations, "simulation", "simulations");
     if (result_.execution == Execution::kOpenLoop) {
-      text +=
-          fmt::format(" of {} ({})",
-                      counted(static_cast<std::int64_t>(result_.traces.size()), "trace", "traces"),
-                      exploration_text(result_));
+      text += fmt::format(
+          " of {} ({})",
+          base::counted(static_cast<std::int64_t>(result_.traces.size()), "trace", "traces"),
+          exploration_text(result_));
     } else {
       text += " in closed loop";
     }

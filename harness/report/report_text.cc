@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "compiler/base/diagnostic_printer.h"
+#include "compiler/base/words.h"
 #include "harness/campaign/result_json.h"
 #include "harness/campaign/sample_record.h"
 #include "harness/confidence/clean_runs.h"
@@ -111,12 +112,12 @@ class TextReport {
     }
     runs += ')';
     if (trace.rejected > 0) {
-      runs += fmt::format("; {} drawn again",
-                          counted(trace.rejected, "invalid start was", "invalid starts were"));
+      runs += fmt::format("; {} drawn again", base::counted(trace.rejected, "invalid start was",
+                                                            "invalid starts were"));
     }
     line("simulations", runs);
     for (const auto& lost : trace.losses) {
-      line("lost", fmt::format("{}: {}, first in {}.{}", counted(lost.count, "run", "runs"),
+      line("lost", fmt::format("{}: {}, first in {}.{}", base::counted(lost.count, "run", "runs"),
                                lost.kind, trace.trace->number, lost.example));
     }
     line("claimed", trace.claim);
@@ -195,9 +196,10 @@ class TextReport {
 
   /// Where executions begin, and which ways they went.
   void paths(const LoopResult& loop) {
-    const auto guided = loop.guided ? fmt::format(", but in {} chosen for what they lead to",
-                                                  counted(*loop.guided, "execution", "executions"))
-                                    : std::string();
+    const auto guided = loop.guided
+                            ? fmt::format(", but in {} chosen for what they lead to",
+                                          base::counted(*loop.guided, "execution", "executions"))
+                            : std::string();
     line("start states",
          fmt::format("{}, each {}{}", loop.initial_states,
                      loop.has_weights ? "as likely as its weight" : "equally likely", guided));
@@ -211,8 +213,8 @@ class TextReport {
                            : fmt::format("{} ({})", path.events[t], path.outcomes[t]));
       }
       line("path",
-           fmt::format("{}, such as 1.{}: {}; {}", counted(path.runs, "run", "runs"), path.example,
-                       fmt::join(steps, ", "), end_of(path.end, path.detail)));
+           fmt::format("{}, such as 1.{}: {}; {}", base::counted(path.runs, "run", "runs"),
+                       path.example, fmt::join(steps, ", "), end_of(path.end, path.detail)));
     }
     if (loop.paths.size() > kMaxPaths) {
       line("path", fmt::format("and {} others", loop.paths.size() - kMaxPaths));
@@ -255,12 +257,13 @@ class TextReport {
     if (trace.admitted > 0) {
       return line("paper's rule", "not evaluated: it supposes a single end state");
     }
-    const auto paper =
-        trace.paper_stopped_at
-            ? fmt::format("satisfied after {} ({}) [not a probability of error]",
-                          counted(*trace.paper_stopped_at, "run", "runs"), trace.paper_variant)
-            : fmt::format("not satisfied within {} ({})",
-                          counted(trace.clean, "clean run", "clean runs"), trace.paper_variant);
+    const auto paper = trace.paper_stopped_at
+                           ? fmt::format("satisfied after {} ({}) [not a probability of error]",
+                                         base::counted(*trace.paper_stopped_at, "run", "runs"),
+                                         trace.paper_variant)
+                           : fmt::format("not satisfied within {} ({})",
+                                         base::counted(trace.clean, "clean run", "clean runs"),
+                                         trace.paper_variant);
     line("paper's rule", paper);
   }
 
@@ -467,7 +470,7 @@ std::string replay_text(const ReplayResult& result, const ReportStyle& style) {
     case ReplayOutcome::kIdentical:
       return head + paint("identical", "1;32") +
              fmt::format(", {} {} compared bit for bit{}\n", result.timepoints,
-                         result.timepoints == 1 ? "observation" : "observations",
+                         base::agreed(result.timepoints, "observation", "observations"),
                          result.digest.empty() ? "" : ", digest " + result.digest);
     case ReplayOutcome::kCannot:
       return head + paint("cannot be repeated", "1;33") + '\n' + wrapped("  ", result.reason, 2);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "compiler/base/words.h"
 #include "harness/confidence/rounding.h"
 
 namespace parallax::harness {
@@ -22,10 +23,6 @@ std::string verdict_word(CampaignVerdict verdict, bool color) {
       break;
   }
   return painted("inconclusive", "1;33", color);
-}
-
-std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
 std::string end_of(PathEnd end, const std::string& detail) {
@@ -71,7 +68,7 @@ std::string coverage_shares_text(const CampaignResult& result) {
 }
 
 std::string rate_words(const LoopResult& loop, const CauseRate& rate) {
-  return fmt::format("{}, {} ({} interval {})", counted(rate.count, "run", "runs"),
+  return fmt::format("{}, {} ({} interval {})", base::counted(rate.count, "run", "runs"),
                      percent_about(rate.rate), level_text(loop.causes_level),
                      percent_interval(rate.lower, rate.upper));
 }
@@ -81,16 +78,16 @@ std::string cover_text(const CoverResult& cover) {
   const auto left = std::ssize(cover.left);
   if (cover.items == 0) return "plan and model have nothing to show";
   auto text = left == 0 ? fmt::format("all of {} of plan and model",
-                                      counted(cover.items, "behaviour", "behaviours"))
+                                      base::counted(cover.items, "behaviour", "behaviours"))
                         : fmt::format("{} of {} of plan and model", cover.items - left,
-                                      counted(cover.items, "behaviour", "behaviours"));
+                                      base::counted(cover.items, "behaviour", "behaviours"));
   if (left == 0) return text;
   if (cover.bound < 1.0) {
     text += fmt::format("; {} comes in fewer than {} of executions ({} confidence{}, {})",
                         left == 1 ? "the other one" : "each of the others", percent_up(cover.bound),
                         level_text(cover.confidence), left == 1 ? "" : " in all of them together",
-                        counted(cover.drawn + cover.lost, "execution with a drawn start",
-                                "executions with a drawn start"));
+                        base::counted(cover.drawn + cover.lost, "execution with a drawn start",
+                                      "executions with a drawn start"));
   }
   if (cover.end == End::kRunLimit) {
     text += fmt::format("; max_runs came before that was {}", percent_up(cover.epsilon));

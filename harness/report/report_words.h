@@ -15,8 +15,6 @@ namespace parallax::harness {
 std::string painted(std::string_view text, const char* color, bool is_on);
 /// "no discrepancy found", "discrepancy", "inconclusive", in its colour.
 std::string verdict_word(CampaignVerdict verdict, bool color);
-/// "1 run", "2 runs"
-std::string counted(std::int64_t count, std::string_view one, std::string_view many);
 /// "the plan fails with grasp-failed"
 std::string end_of(PathEnd end, const std::string& detail);
 /// "repeated bit for bit"

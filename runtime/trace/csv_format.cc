@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "compiler/base/shown_text.h"
+#include "compiler/base/words.h"
 #include "runtime/trace/open_atoms.h"
 
 namespace parallax::runtime {
@@ -79,7 +80,7 @@ std::string CsvFormat::end(const ListEnd& end) {
   const auto columns = count(vocabulary_.fluents) + count(vocabulary_.releasable) +
                        count(vocabulary_.events) + count(vocabulary_.predicates);
   auto row = base::csv_cell("# " + end.exploration + end.remark + ": " +
-                            std::to_string(end.traces) + (end.traces == 1 ? " trace" : " traces"));
+                            base::counted(end.traces, "trace"));
   return row.append(columns + 1, ',') + "\r\n";
 }
 

@@ -6,6 +6,7 @@
 
 #include "compiler/base/line_diff.h"
 #include "compiler/base/whole_number.h"
+#include "compiler/base/words.h"
 #include "runtime/trace/open_atoms.h"
 
 namespace parallax::runtime {
@@ -238,7 +239,7 @@ std::string DecreasonerFormat::trace(const Trace& trace, const OpenAtoms& open) 
 std::string DecreasonerFormat::end(const ListEnd& end) {
   std::string out = printed_ > 0 ? "---\n" : "";
   if (end.traces == 0 && end.complete) return out + "no models found" + end.remark + '\n';
-  out += std::to_string(end.traces) + (end.traces == 1 ? " model" : " models");
+  out += base::counted(end.traces, "model");
   return out + (end.complete ? "" : ", " + end.exploration) + end.remark + '\n';
 }
 

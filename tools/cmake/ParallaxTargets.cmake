@@ -39,8 +39,8 @@ function(parallax_batches target size_limit)
   endforeach()
 endfunction()
 
-# Where a folder sets PARALLAX_COLD its libraries and programs are compiled with -O1: they read and write
-# text, and wait for solvers and simulators in other folders. It saves a fifth of their compile time.
+# Cold rooms, and programs where PARALLAX_COLD is set, are compiled with -O1: they read and write text, and wait
+# for solvers and simulators. It saves a fifth of their compile time.
 function(parallax_optimize target)
   if(PARALLAX_COLD)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)

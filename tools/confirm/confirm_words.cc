@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "compiler/base/shown_text.h"
+#include "compiler/base/words.h"
 #include "harness/confidence/rounding.h"
 #include "tools/confirm/confirm.h"
 
@@ -44,10 +45,10 @@ std::string share_words(const Persistence& seen, std::int64_t asked) {
   }
   const auto share = static_cast<double>(seen.failures) / static_cast<double>(seen.runs);
   auto out = fmt::format("it happens in {} of {} run{} ({})", seen.failures, seen.runs,
-                         seen.runs == 1 ? "" : "s", harness::percent_about(share));
+                         base::agreed(seen.runs, "", "s"), harness::percent_about(share));
   if (const auto others = asked - seen.runs; others > 0) {
     out += fmt::format("; {} more {} lost, or went wrong otherwise", others,
-                       others == 1 ? "was" : "were");
+                       base::agreed(others, "was", "were"));
   }
   return out;
 }
@@ -348,7 +349,7 @@ std::string confirm_text(const Confirmation& confirmation, const std::string& ru
     out += words + '\n';
   }
   out += fmt::format("{} simulation{}, on record in {}/{}\n", confirmation.runs,
-                     confirmation.runs == 1 ? "" : "s", base::printable(run_dir),
+                     base::agreed(confirmation.runs, "", "s"), base::printable(run_dir),
                      TriedStarts::kFolder);
   return out;
 }
@@ -375,7 +376,7 @@ std::vector<std::string> threshold_sentences(const Threshold& threshold) {
       line += fmt::format(", at {} another thing goes wrong", others);
     }
     if (const auto gaps = count(StartVerdict::kNoStart); gaps > 0) {
-      line += fmt::format(", {} {} no valid start, or lost", gaps, gaps == 1 ? "is" : "are");
+      line += fmt::format(", {} {} no valid start, or lost", gaps, base::agreed(gaps, "is", "are"));
     }
     out.push_back(line + '.');
     for (const auto& border : scan.borders) {
@@ -417,9 +418,9 @@ std::string threshold_text(const Threshold& threshold, const std::string& run_di
         words, own ? ", as recorded" : "");
   }
   for (const auto& sentence : threshold_sentences(threshold)) out += sentence + '\n';
-  out +=
-      fmt::format("{} simulation{}, on record in {}/{}\n", threshold.runs,
-                  threshold.runs == 1 ? "" : "s", base::printable(run_dir), TriedStarts::kFolder);
+  out += fmt::format("{} simulation{}, on record in {}/{}\n", threshold.runs,
+                     base::agreed(threshold.runs, "", "s"), base::printable(run_dir),
+                     TriedStarts::kFolder);
   return out;
 }
 
