@@ -7,6 +7,7 @@
 #include "harness/report/law_json.h"
 #include "harness/report/opinion_words.h"
 #include "harness/report/report.h"
+#include "harness/report/report_words.h"
 #include "harness/report/standing.h"
 #include "harness/report/text_layout.h"
 #include "harness/simulator/state_json.h"
@@ -193,18 +194,6 @@ OrderedJson json_of(const TraceResult& result, const std::vector<ComparedFluents
   return out;
 }
 
-std::string_view word(Confirmation confirmation) {
-  switch (confirmation) {
-    case Confirmation::kBitEqual:
-      return "bit-equal";
-    case Confirmation::kDiffers:
-      return "differs";
-    case Confirmation::kLost:
-      break;
-  }
-  return "lost";
-}
-
 /// The path of an executed plan, and where the model cannot follow it.
 void add_path(const Discrepancy& found, OrderedJson& out) {
   const auto& record = found.record;
@@ -246,7 +235,7 @@ OrderedJson json_of(const CampaignResult& result, const Discrepancy& found) {
                        {"fluents", found.cause.fluents}}},
                      {"first", json_of(found.first)},
                      {"fluents", json_of(found.fluents)},
-                     {"repeated", word(found.confirmation)},
+                     {"repeated", confirmation_key(found.confirmation)},
                      {"start", state_json<OrderedJson>(found.record.initial)},
                      {"end", state_json<OrderedJson>(found.end)},
                      {"outcomes", std::move(outcomes)},

@@ -42,6 +42,18 @@ std::string end_of(PathEnd end, const std::string& detail) {
   return fmt::format("ended by {}", to_string(end));
 }
 
+std::string_view confirmation_key(Confirmation confirmation) {
+  switch (confirmation) {
+    case Confirmation::kBitEqual:
+      return "bit-equal";
+    case Confirmation::kDiffers:
+      return "differs";
+    case Confirmation::kLost:
+      break;
+  }
+  return "lost";
+}
+
 std::string confirmation(const Discrepancy& found) {
   switch (found.confirmation) {
     case Confirmation::kBitEqual:

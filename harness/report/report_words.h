@@ -17,6 +17,8 @@ std::string painted(std::string_view text, const char* color, bool is_on);
 std::string verdict_word(CampaignVerdict verdict, bool color);
 /// "the plan fails with grasp-failed"
 std::string end_of(PathEnd end, const std::string& detail);
+/// "bit-equal", "differs", "lost": as report.json has it.
+std::string_view confirmation_key(Confirmation confirmation);
 /// "repeated bit for bit"
 std::string confirmation(const Discrepancy& found);
 /// "stopped before all were explored"
