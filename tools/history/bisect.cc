@@ -22,6 +22,7 @@
 #include "compiler/base/json.h"
 #include "compiler/base/path_gate.h"
 #include "compiler/base/temporary_folder.h"
+#include "harness/report/run_report.h"
 #include "tools/history/git.h"
 
 namespace parallax::tools {
@@ -208,21 +209,20 @@ class Bisection {
   }
 
   static void judge(const base::Captured& run, RevisionVerdict& out) {
+    const auto report = harness::read_run_report(run.out);
+    const bool answered = (run.code == 0 || run.code == 1) && report && report->status == "ok";
+    if (answered && (report->verdict == "discrepancy" || report->verdict == "no-discrepancy")) {
+      out.verdict = report->verdict;
+      if (report->discrepancies && !report->discrepancies->empty()) {
+        out.words = report->discrepancies->front().words;
+      }
+      return;
+    }
     const auto document = base::parse_json(run.out);
     const auto text = [](const Json& object, const char* name) {
       const auto* value = base::json_member(object, name);
       return value == nullptr ? "" : base::json_as<std::string>(*value).value_or("");
     };
-    const auto verdict = text(document, "verdict");
-    const bool answered = (run.code == 0 || run.code == 1) && text(document, "status") == "ok";
-    if (answered && (verdict == "discrepancy" || verdict == "no-discrepancy")) {
-      out.verdict = verdict;
-      const auto* list = base::json_member(document, "discrepancies");
-      if (list != nullptr && list->is_array() && !list->empty()) {
-        out.words = text(list->front(), "words");
-      }
-      return;
-    }
     out.input_is_wrong = run.code == 2 || run.code == 3;
     const auto* diagnostics = base::json_member(document, "diagnostics");
     for (const auto& one :
