@@ -12,6 +12,7 @@
 #include "compiler/base/words.h"
 #include "harness/confidence/rate_evidence.h"
 #include "harness/confidence/rounding.h"
+#include "harness/report/run_report.h"
 
 namespace parallax::tools {
 namespace {
@@ -39,29 +40,40 @@ std::string words_of(const harness::CauseExpectation& cause) {
   return out;
 }
 
-/// Does a discrepancy in a document, or all those with one cause, match the expectation? Apart from
-/// the kind of cause.
-bool is_as_expected(const harness::CauseExpectation& expect, const Json& found) {
-  const auto fluents = member(found, "fluents", Json::array());
-  const auto reason = member(found, "reason", "").get<std::string>();
-  return (expect.event.empty() || member(found, "event", "") == expect.event) &&
+/// Is the cause of a discrepancy, or of all those that were counted together, as expected? Apart
+/// from the kind of cause.
+bool is_as_expected(const harness::CauseExpectation& expect, const harness::Cause& cause) {
+  const auto& fluents = cause.fluents;
+  return (expect.event.empty() || cause.event == expect.event) &&
          (expect.fluent.empty() ||
           std::find(fluents.begin(), fluents.end(), expect.fluent) != fluents.end()) &&
-         (expect.reason.empty() || reason.substr(0, reason.find(':')) == expect.reason);
+         (expect.reason.empty() || cause.reason.substr(0, cause.reason.find(':')) == expect.reason);
 }
 
-void compare_cause(const harness::CauseExpectation& expect, const Json& run,
+/// The cause of an entry in a document of rates.
+harness::Cause counted_cause(const Json& entry) {
+  harness::Cause out;
+  out.text = member(entry, "cause", "").get<std::string>();
+  out.reason = member(entry, "reason", "").get<std::string>();
+  out.event = member(entry, "event", "").get<std::string>();
+  for (const auto& fluent : member(entry, "fluents", Json::array())) {
+    if (fluent.is_string()) out.fluents.push_back(fluent.get<std::string>());
+  }
+  return out;
+}
+
+using Reported = std::vector<harness::ReportedDiscrepancy>;
+
+void compare_cause(const harness::CauseExpectation& expect, const Reported& discrepancies,
                    std::string_view explanation, std::vector<std::string>& out) {
-  const auto discrepancies = member(run, "discrepancies", Json::array());
   if (discrepancies.empty()) {
     out.push_back(fmt::format("no discrepancy, expected one with {}", words_of(expect)));
     return;
   }
   for (const auto& discrepancy : discrepancies) {
-    const auto cause = member(discrepancy, "cause", Json::object());
+    const auto& cause = discrepancy.found.cause;
     if (is_as_expected(expect, cause)) continue;
-    out.push_back(fmt::format("the cause is `{}`, expected {}",
-                              member(cause, "text", "").get<std::string>(), words_of(expect)));
+    out.push_back(fmt::format("the cause is `{}`, expected {}", cause.text, words_of(expect)));
     return;
   }
   if (expect.kind.empty()) return;
@@ -76,14 +88,14 @@ void compare_cause(const harness::CauseExpectation& expect, const Json& run,
 std::vector<std::string> unlike_causes(const harness::CauseExpectation& expect,
                                        const Json& causes) {
   std::vector<std::string> out;
-  for (const auto& cause : causes) {
-    const auto kind = member(cause, "kind", "unknown").get<std::string>();
+  for (const auto& entry : causes) {
+    const auto kind = member(entry, "kind", "unknown").get<std::string>();
+    const auto cause = counted_cause(entry);
     const bool same = is_as_expected(expect, cause);
     if (same && (expect.kind.empty() || kind == expect.kind)) continue;
-    const auto text = member(cause, "cause", "").get<std::string>();
-    const auto count = member(cause, "count", 0).get<std::int64_t>();
+    const auto count = member(entry, "count", 0).get<std::int64_t>();
     out.push_back(fmt::format("in {} the cause is `{}`{}, expected {}", base::counted(count, "run"),
-                              text, same ? fmt::format(" and its kind {}", kind) : "",
+                              cause.text, same ? fmt::format(" and its kind {}", kind) : "",
                               words_of(expect)));
   }
   return out;
@@ -115,34 +127,28 @@ std::string missing_evidence(const harness::RateExpectation& expect, const std::
 
 std::vector<std::string> unmet(const harness::Expectation& expect, std::string_view run_document,
                                std::string_view explanation) {
-  const auto run = base::parse_json(run_document);
-  if (run.is_discarded() || !run.is_object() || run.value("status", "") != "ok") {
-    return {"the run gave no result"};
-  }
+  const auto run = harness::read_run_report(run_document);
+  if (!run || run->status != "ok") return {"the run gave no result"};
   std::vector<std::string> out;
-  const auto verdict = run.value("verdict", "");
-  if (expect.verdict && verdict != *expect.verdict) {
-    out.push_back(fmt::format("verdict {}, expected {}", verdict, *expect.verdict));
+  if (expect.verdict && run->verdict != *expect.verdict) {
+    out.push_back(fmt::format("verdict {}, expected {}", run->verdict, *expect.verdict));
   }
-  const auto iterations = run.value("iterations", std::int64_t{-1});
+  const auto iterations = run->iterations.value_or(-1);
   if (expect.iterations && iterations != *expect.iterations) {
     out.push_back(fmt::format("{} iterations, expected {}", iterations, *expect.iterations));
   }
-  const auto simulations = run.value("simulations", std::int64_t{-1});
+  const auto simulations = run->simulations.value_or(-1);
   if (expect.max_simulations && simulations > *expect.max_simulations) {
     out.push_back(
         fmt::format("{} simulations, expected at most {}", simulations, *expect.max_simulations));
   }
+  const auto discrepancies = run->discrepancies.value_or(Reported());
   std::set<std::string> diverging, earlier;
-  for (const auto& discrepancy : run.value("discrepancies", Json::array())) {
-    for (const auto& fluent : discrepancy.value("fluents", Json::array())) {
-      diverging.insert(fluent.value("fluent", ""));
-    }
-    for (const auto& fluent : discrepancy.value("first", Json::array())) {
-      earlier.insert(fluent.value("fluent", ""));
-    }
+  for (const auto& discrepancy : discrepancies) {
+    for (const auto& fluent : discrepancy.found.fluents) diverging.insert(fluent.fluent);
+    for (const auto& fluent : discrepancy.found.first) earlier.insert(fluent.fluent);
   }
-  if (run.value("compare", "") != "final") diverging.merge(earlier);
+  if (run->comparison != to_string(harness::Comparison::kFinal)) diverging.merge(earlier);
   for (const auto& fluent : expect.fluents) {
     if (diverging.contains(fluent)) continue;
     out.push_back(fmt::format("{} {}", fluent,
@@ -150,7 +156,7 @@ std::vector<std::string> unmet(const harness::Expectation& expect, std::string_v
                                   ? "diverged on the way, but not in the end, which is what counts"
                                   : "did not diverge"));
   }
-  if (expect.cause) compare_cause(*expect.cause, run, explanation, out);
+  if (expect.cause) compare_cause(*expect.cause, discrepancies, explanation, out);
   return out;
 }
 
@@ -202,12 +208,10 @@ std::string first_error(const std::string& document) {
 }
 
 std::string first_discrepancy(const std::string& run_document) {
-  const auto run = base::parse_json(run_document);
-  for (const auto& found : run.value("discrepancies", Json::array())) {
-    return fmt::format("{}.{}: {}", found.value("trace", std::int64_t{0}),
-                       found.value("sample", std::int64_t{0}), found.value("words", ""));
-  }
-  return {};
+  const auto run = harness::read_run_report(run_document);
+  if (!run || !run->discrepancies || run->discrepancies->empty()) return {};
+  const auto& first = run->discrepancies->front();
+  return fmt::format("{}: {}", first.id(), first.words);
 }
 
 ToldStanding standing_of_run(std::string_view run_document) {
