@@ -1,27 +1,18 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <map>
 
-#include "compiler/base/json.h"
+#include "compiler/base/contract.h"
+#include "harness/report/run_report.h"
 #include "tools/diff/gate.h"
 #include "tools/diff/textconv.h"
 
 namespace parallax::tools {
 namespace {
 
-using SortedJson = nlohmann::json;
 using compiler::FactKind;
-
-const SortedJson& part(const SortedJson& object, const char* name) {
-  static const SortedJson kNothing;
-  const auto* member = base::json_member(object, name);
-  return member == nullptr ? kNothing : *member;
-}
-
-std::string text_at(const SortedJson& object, const char* name) {
-  return base::json_as<std::string>(part(object, name)).value_or("");
-}
 
 /// A discrepancy as it is known again in another run: by the events of its trace and its cause.
 struct FoundDiscrepancy {
@@ -34,43 +25,28 @@ struct FoundDiscrepancy {
 struct RunSummary {
   std::string name, verdict;
   bool stopped = false;                       // not all traces were examined
-  std::string judged_by;                      // what decides on discrepancies, as JSON
+  std::string judged_by;                      // what decides on discrepancies
   std::map<std::string, std::string> traces;  // verdicts by events
   std::vector<FoundDiscrepancy> discrepancies;
 };
 
-RunSummary summary_of(const std::string& name, const std::string& report) {
-  const auto json = base::parse_json(report);
+RunSummary summary_of(const std::string& name, const harness::RunReport& report) {
   RunSummary out;
   out.name = name;
-  out.verdict = text_at(json, "verdict");
-  out.stopped = text_at(json, "exploration") == "stopped" ||
-                base::json_as<bool>(part(json, "interrupted")).value_or(false);
-  out.judged_by =
-      base::json_text(SortedJson{part(json, "compare"), part(json, "execution"),
-                                 part(json, "criterion"), part(part(json, "simulator"), "name")});
+  out.verdict = report.verdict;
+  out.stopped = report.exploration == "stopped" || report.interrupted.value_or(false);
+  out.judged_by = fmt::format("{}\n{}\n{}\n{}", report.comparison, report.execution,
+                              report.criterion, report.simulator_name);
   std::map<std::int64_t, std::string> events;
-  for (const auto& trace : part(json, "traces")) {
-    std::string text;
-    for (const auto& event : part(trace, "events")) {
-      const auto word = base::json_as<std::string>(event);
-      text += (text.empty() ? "" : " ") + word.value_or("");
-    }
-    const auto number = base::json_as<std::int64_t>(part(trace, "trace")).value_or(0);
-    events[number] = text;
-    out.traces[text] = text_at(trace, "verdict");
+  for (const auto& trace : *report.traces) {
+    const auto text = fmt::format("{}", fmt::join(trace.events, " "));
+    events[trace.number] = text;
+    out.traces[text] = trace.verdict;
   }
-  for (const auto& found : part(json, "discrepancies")) {
-    const auto number = base::json_as<std::int64_t>(part(found, "trace")).value_or(0);
-    FoundDiscrepancy one;
-    one.events = events[number];
-    one.cause = text_at(part(found, "cause"), "text");
-    one.sample = fmt::format("{}.{}", number,
-                             base::json_as<std::int64_t>(part(found, "sample")).value_or(0));
-    one.timepoint = base::json_as<std::int64_t>(part(found, "first_divergence")).value_or(0);
-    one.words = text_at(found, "words");
-    one.replay = text_at(found, "replay");
-    out.discrepancies.push_back(std::move(one));
+  if (!report.discrepancies) return out;
+  for (const auto& one : *report.discrepancies) {
+    out.discrepancies.push_back({events[one.found.trace], one.found.cause.text, one.id(),
+                                 one.found.first_divergence, one.words, one.replay});
   }
   return out;
 }
@@ -179,8 +155,11 @@ base::Result<std::vector<RuleResult>> gate_runs(const GateInput& input,
   const auto old_report = load_run_report(input.old_path, context);
   const auto new_report = load_run_report(input.new_path, context);
   if (!old_report || !new_report) return context.sink().already_reported();
-  const auto before = summary_of(input.old_path, *old_report);
-  const auto after = summary_of(input.new_path, *new_report);
+  const auto old_run = harness::read_run_report(*old_report);
+  const auto new_run = harness::read_run_report(*new_report);
+  PARALLAX_REQUIRE(old_run && new_run, "a report that was loaded can be read");
+  const auto before = summary_of(input.old_path, *old_run);
+  const auto after = summary_of(input.new_path, *new_run);
   std::vector<RuleResult> out;
   if (rules.gained_discrepancies) out.push_back(discrepancy_rule(before, after, report));
   if (rules.lost_traces) out.push_back(run_trace_rule(before, after));
