@@ -14,12 +14,14 @@
 #include "compiler/artifact/artifact_reader.h"
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
+#include "compiler/base/contract.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "compiler/compare/model_facts.h"
 #include "compiler/syntax/parser.h"
 #include "harness/campaign/journal.h"
+#include "harness/report/run_report.h"
 #include "tools/diff/revision.h"
 #include "tools/diff/trace_set.h"
 
@@ -31,43 +33,31 @@ using compiler::FactKind;
 namespace {
 
 namespace fs = std::filesystem;
-using SortedJson = nlohmann::json;
 
-/// A text as it is, anything else as JSON.
-std::string word(const SortedJson& value) {
-  return value.is_string() ? value.get<std::string>() : base::json_text(value);
+/// What is not reported is `null`.
+std::string word(const std::string& text) { return text.empty() ? "null" : text; }
+template <typename T>
+std::string word(const std::optional<T>& number) {
+  return number ? base::json_text(nlohmann::json(*number)) : "null";
 }
 
-std::string joined(const SortedJson& list) {
-  std::string out;
-  if (!list.is_array()) return word(list);
-  for (const auto& item : list) out += (out.empty() ? "" : ", ") + word(item);
-  return out;
-}
-
-const SortedJson& field(const SortedJson& object, const char* name) {
-  static const SortedJson kNothing;
-  if (!object.is_object()) return kNothing;
-  const auto found = object.find(name);
-  return found == object.end() ? kNothing : *found;
-}
-
-class ReportReader {
+class ReportFacts {
  public:
-  ReportReader(const SortedJson& report, std::string file)
+  ReportFacts(const harness::RunReport& report, std::string file)
       : report_(report), file_(std::move(file)) {}
 
   std::vector<Fact> run() {
-    for (const auto* name : {"scenario", "seed", "tool_version", "simulator", "criterion"}) {
-      add(FactKind::kDeclaration, name, word(field(report_, name)));
-    }
-    for (const auto* name : {"verdict", "exploration", "simulations"}) {
-      add(FactKind::kAxiom, name, word(field(report_, name)));
-    }
-    const auto& traces = field(report_, "traces");
-    for (std::size_t i = 0; traces.is_array() && i < traces.size(); ++i) add_trace(traces[i]);
-    const auto& found = field(report_, "discrepancies");
-    for (std::size_t i = 0; found.is_array() && i < found.size(); ++i) add_discrepancy(found[i]);
+    add(FactKind::kDeclaration, "scenario", word(report_.scenario));
+    add(FactKind::kDeclaration, "seed", word(report_.seed));
+    add(FactKind::kDeclaration, "tool_version", word(report_.tool_version));
+    add(FactKind::kDeclaration, "simulator", word(report_.simulator));
+    add(FactKind::kDeclaration, "criterion", word(report_.criterion));
+    add(FactKind::kAxiom, "verdict", report_.verdict);
+    add(FactKind::kAxiom, "exploration", word(report_.exploration));
+    add(FactKind::kAxiom, "simulations", word(report_.simulations));
+    for (const auto& trace : *report_.traces) add_trace(trace);
+    if (!report_.discrepancies) return std::move(facts_);
+    for (const auto& found : *report_.discrepancies) add_discrepancy(found.found);
     return std::move(facts_);
   }
 
@@ -77,48 +67,43 @@ class ReportReader {
     facts_.push_back({kind, key, text, text, {file_, 0}});
   }
 
-  void add_trace(const SortedJson& trace) {
-    const auto name = fmt::format("trace [{}] from [{}]", joined(field(trace, "events")),
-                                  joined(field(trace, "initial_state")));
-    names_[word(field(trace, "trace"))] = name;
-    const auto& certified = field(trace, "certified");
+  void add_trace(const harness::ReportedTrace& trace) {
+    const auto name = fmt::format("trace [{}] from [{}]", fmt::join(trace.events, ", "),
+                                  fmt::join(trace.initial_state, ", "));
+    names_[trace.number] = name;
     add(FactKind::kAxiom, name,
-        fmt::format("{}, {} simulations, {} clean, confidence {} that p < {}",
-                    word(field(trace, "verdict")), word(field(trace, "simulations")),
-                    word(field(trace, "clean")), word(field(certified, "confidence")),
-                    word(field(certified, "epsilon"))));
+        fmt::format("{}, {} simulations, {} clean, confidence {} that p < {}", word(trace.verdict),
+                    word(trace.simulations), word(trace.clean), word(trace.confidence),
+                    word(trace.epsilon)));
   }
 
-  static std::vector<std::string> texts(const SortedJson& fluents) {
-    std::vector<std::string> out;
-    for (std::size_t i = 0; fluents.is_array() && i < fluents.size(); ++i) {
-      out.push_back(
-          fmt::format("{} at {} predicted {}, observed {}", word(field(fluents[i], "fluent")),
-                      word(field(fluents[i], "timepoint")), word(field(fluents[i], "predicted")),
-                      word(field(fluents[i], "observed"))));
-    }
-    return out;
+  static std::string text_of(const harness::DivergingFluent& fluent) {
+    return fmt::format("{} at {} predicted {}, observed {}", fluent.fluent, fluent.timepoint,
+                       fluent.predicted, fluent.observed);
   }
 
-  void add_discrepancy(const SortedJson& found) {
-    const auto trace = names_.find(word(field(found, "trace")));
-    auto differing = texts(field(found, "first"));
+  void add_discrepancy(const harness::Discrepancy& found) {
+    const auto trace = names_.find(found.trace);
+    std::vector<std::string> differing;
+    for (const auto& fluent : found.first) differing.push_back(text_of(fluent));
     // The last state's may be the same ones.
-    for (auto& text : texts(field(found, "fluents"))) {
+    for (const auto& fluent : found.fluents) {
+      auto text = text_of(fluent);
       if (std::find(differing.begin(), differing.end(), text) == differing.end()) {
         differing.push_back(std::move(text));
       }
     }
-    const auto kind = word(field(found, "kind"));
+    const bool transient = found.kind == harness::DiscrepancyKind::kTransient;
     add(FactKind::kAxiom,
-        "discrepancy in " + (trace == names_.end() ? word(field(found, "trace")) : trace->second),
-        fmt::format("{}first at {}: {}", kind == "transient" ? "transient, " : "",
-                    word(field(found, "first_divergence")), fmt::join(differing, "; ")));
+        "discrepancy in " +
+            (trace == names_.end() ? fmt::format("{}", found.trace) : trace->second),
+        fmt::format("{}first at {}: {}", transient ? "transient, " : "", found.first_divergence,
+                    fmt::join(differing, "; ")));
   }
 
-  const SortedJson& report_;
+  const harness::RunReport& report_;
   const std::string file_;
-  std::map<std::string, std::string> names_;  // by number
+  std::map<std::int64_t, std::string> names_;  // by number
   std::vector<Fact> facts_;
 };
 
@@ -182,9 +167,9 @@ Text load_run_report(const std::string& path, Context& context) {
   auto text = file == fs::path(path) ? base::read_file(file, context.sink())
                                      : base::read_file_of(path, "report.json", context.sink());
   if (!text) return context.sink().already_reported();
-  const auto report = base::parse_json(*text);
-  if (report.is_discarded() || !report.is_object()) return refuse("it is no JSON object");
-  if (!field(report, "verdict").is_string() || !field(report, "traces").is_array()) {
+  const auto report = harness::read_run_report(*text);
+  if (!report) return refuse("it is no JSON object");
+  if (report->verdict.empty() || !report->traces) {
     return refuse("it has no `verdict` and `traces`");
   }
   return text;
@@ -194,8 +179,9 @@ base::Result<std::vector<Fact>> load_run_facts(const std::string& path, Context&
   const auto text = load_run_report(path, context);
   if (!text) return context.sink().already_reported();
   const auto file = report_file(path);
-  const auto report = base::parse_json(*text);
-  auto facts = ReportReader(report, file.string()).run();
+  const auto report = harness::read_run_report(*text);
+  PARALLAX_REQUIRE(report.has_value(), "a report that was loaded can be read");
+  auto facts = ReportFacts(*report, file.string()).run();
   if (auto read = texts_fact(file.parent_path())) facts.push_back(*std::move(read));
   return facts;
 }
