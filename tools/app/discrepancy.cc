@@ -10,53 +10,13 @@
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
-#include "compiler/base/json.h"
 #include "harness/campaign/judge.h"
+#include "harness/report/run_report.h"
 
 namespace parallax::tools {
 namespace {
 
-using Json = nlohmann::json;
-
-/// A discrepancy as report.json has it.
-struct ReportedDiscrepancy {
-  struct Fluent {
-    std::string name;
-    std::int64_t timepoint = 0;
-    bool observed = false;
-  };
-  std::int64_t trace = 0, sample = 0, first_divergence = 0;
-  std::vector<Fluent> first;  // that differed there
-
-  std::string id() const { return fmt::format("{}.{}", trace, sample); }
-};
-
-/// None if an entry is not in the format of `parallax run`.
-std::optional<ReportedDiscrepancy> decode(const Json& entry) {
-  const auto integer = [](const Json& object, const char* name) {
-    const auto* value = base::json_member(object, name);
-    return value == nullptr ? std::nullopt : base::json_as<std::int64_t>(*value);
-  };
-  const auto trace = integer(entry, "trace"), sample = integer(entry, "sample"),
-             divergence = integer(entry, "first_divergence");
-  const auto* first = base::json_member(entry, "first");
-  if (!trace || !sample || !divergence || *divergence < 0 || first == nullptr ||
-      !first->is_array()) {
-    return std::nullopt;
-  }
-  ReportedDiscrepancy out{*trace, *sample, *divergence, {}};
-  for (const auto& fluent : *first) {
-    const auto time = integer(fluent, "timepoint");
-    const auto *name = base::json_member(fluent, "fluent"),
-               *observed = base::json_member(fluent, "observed");
-    if (!time || name == nullptr || !name->is_string() || observed == nullptr ||
-        !observed->is_boolean()) {
-      return std::nullopt;
-    }
-    out.first.push_back({name->get<std::string>(), *time, observed->get<bool>()});
-  }
-  return out;
-}
+using harness::ReportedDiscrepancy;
 
 /// One discrepancy of report.json; none if the run has none. Reports a number that does not exist.
 base::Result<std::optional<ReportedDiscrepancy>> find_discrepancy(const std::string& run_dir,
@@ -65,18 +25,16 @@ base::Result<std::optional<ReportedDiscrepancy>> find_discrepancy(const std::str
   const auto path = (std::filesystem::path(run_dir) / "report.json").string();
   const auto text = base::read_file_of(run_dir, "report.json", sink);
   if (!text) return sink.already_reported();
-  const auto report = base::parse_json(*text);
+  const auto report = harness::read_run_report(*text);
   const auto refuse = [&] {
     return sink.error_about(codes::kUsage, path, "this is no report of a run");
   };
-  const auto* list = base::json_member(report, "discrepancies");
-  if (list == nullptr || !list->is_array()) return refuse();
+  if (!report || !report->discrepancies) return refuse();
   std::string others;
-  for (const auto& entry : *list) {
-    auto found = decode(entry);
-    if (!found) return refuse();
-    if (sample.empty() || sample == found->id()) return std::optional(*std::move(found));
-    others += (others.empty() ? "" : ", ") + found->id();
+  for (const auto& found : *report->discrepancies) {
+    if (!found.is_whole) return refuse();
+    if (sample.empty() || sample == found.id()) return std::optional(found);
+    others += (others.empty() ? "" : ", ") + found.id();
   }
   if (sample.empty()) return std::optional<ReportedDiscrepancy>();
   return sink.error_about(codes::kNoSuchSample, run_dir, sample + " with a discrepancy")
@@ -86,7 +44,7 @@ base::Result<std::optional<ReportedDiscrepancy>> find_discrepancy(const std::str
 
 /// Does the journal confirm the report? For a trace, the observations differ there in these
 /// fluents; for an executed plan, each of the fluents was observed so.
-bool is_what_was_seen(const ReportedDiscrepancy& reported, const ScenarioModel& loaded,
+bool is_what_was_seen(const harness::Discrepancy& reported, const ScenarioModel& loaded,
                       const harness::CampaignTrace& trace, const harness::RecordedRun& run,
                       const ObservedPath& path) {
   if (run.record.status != harness::SampleStatus::kOk) return false;
@@ -97,7 +55,7 @@ bool is_what_was_seen(const ReportedDiscrepancy& reported, const ScenarioModel& 
     return judgement.first_divergence == reported.first_divergence &&
            std::equal(judgement.first.begin(), judgement.first.end(), reported.first.begin(),
                       reported.first.end(), [](const auto& seen, const auto& told) {
-                        return seen.fluent == told.name && seen.timepoint == told.timepoint &&
+                        return seen.fluent == told.fluent && seen.timepoint == told.timepoint &&
                                seen.observed == told.observed;
                       });
   }
@@ -105,9 +63,9 @@ bool is_what_was_seen(const ReportedDiscrepancy& reported, const ScenarioModel& 
   const compiler::SymbolTable symbols(loaded.compilation.model);
   const auto& seen = path.points[static_cast<std::size_t>(reported.first_divergence)];
   return std::all_of(reported.first.begin(), reported.first.end(), [&](const auto& told) {
-    const auto fluent = symbols.fluent(told.name);
+    const auto fluent = symbols.fluent(told.fluent);
     if (!fluent) {
-      return std::find(seen.outside.begin(), seen.outside.end(), told.name) != seen.outside.end();
+      return std::find(seen.outside.begin(), seen.outside.end(), told.fluent) != seen.outside.end();
     }
     const auto value = seen.state.holds.find(*fluent);
     return value == seen.state.holds.end() || value->second == told.observed;
@@ -125,7 +83,7 @@ base::Result<std::optional<RecordedDiscrepancy>> load_discrepancy(const RunFolde
   const auto discrepancy = find_discrepancy(folder.folder, sample, sink);
   if (!discrepancy) return sink.already_reported();
   if (!*discrepancy || !journal->header) return std::optional<RecordedDiscrepancy>();
-  const harness::SampleId id{(*discrepancy)->trace, (*discrepancy)->sample};
+  const harness::SampleId id{(*discrepancy)->found.trace, (*discrepancy)->found.sample};
   if (!journal->samples.contains({id.trace, id.sample, harness::DrawPhase::kCertify})) {
     return sink.error_about(codes::kNoSuchSample, folder.folder, (*discrepancy)->id())
         .note("report.json tells of it, the journal does not");
@@ -137,7 +95,7 @@ base::Result<std::optional<RecordedDiscrepancy>> load_discrepancy(const RunFolde
   if (!trace) return sink.already_reported();
   auto path = observed_path(*loaded, recorded, context);
   if (!path) return sink.already_reported();
-  if (!is_what_was_seen(**discrepancy, *loaded, *trace, recorded, *path)) {
+  if (!is_what_was_seen((*discrepancy)->found, *loaded, *trace, recorded, *path)) {
     return sink.error(codes::kForeignJournalLine, recorded.source,
                       "what it observed is not the discrepancy that report.json tells of");
   }
