@@ -6,13 +6,12 @@
 #include <algorithm>
 
 #include "compiler/base/json.h"
+#include "harness/report/run_report.h"
 
 namespace parallax::tools {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr std::string_view kNot = "not ";
 
 std::string text(const Json& object, const char* name) {
   const auto* value = base::json_member(object, name);
@@ -30,79 +29,95 @@ const Json& member(const Json& object, const char* name) {
   return value == nullptr ? kNone : *value;
 }
 
-std::vector<std::string> texts(const Json& list) {
-  std::vector<std::string> out;
-  for (const auto& item : list.is_array() ? list : Json::array()) {
-    if (item.is_string()) out.push_back(item.get<std::string>());
-  }
-  return out;
-}
+using harness::ReportedDiscrepancy;
+using harness::RunReport;
 
-std::vector<std::string> differing(const Json& list) {
+std::vector<std::string> differing(const std::vector<harness::DivergingFluent>& fluents) {
   std::vector<std::string> out;
-  for (const auto& item : list.is_array() ? list : Json::array()) {
-    const auto& observed = member(item, "observed");
-    const bool holds = observed.is_boolean() && observed.get<bool>();
-    out.push_back((holds ? "" : std::string(kNot)) + text(item, "fluent"));
-  }
+  for (const auto& one : fluents) out.push_back((one.observed ? "" : "not ") + one.fluent);
   std::sort(out.begin(), out.end());
   return out;
 }
 
 /// A perform of an executed plan, with its outcome as the plan was told it.
-std::string step_text(const Json& step) {
-  auto out = text(step, "event");
-  if (const auto object = text(step, "object"); !object.empty()) out += " = " + object;
-  if (text(step, "outcome") != "failed") return out;
-  const auto condition = text(step, "condition");
-  return out + (condition.empty() ? " fails" : fmt::format(" fails ({})", condition));
+std::string step_text(const harness::PathStep& step) {
+  auto out = step.event;
+  if (!step.object.empty()) out += " = " + step.object;
+  if (step.succeeded) return out;
+  return out + (step.condition.empty() ? " fails" : fmt::format(" fails ({})", step.condition));
 }
 
-/// "Place(r1): not BoxIn(r1)": the event, and its outcome or a fluent that differs after it.
-void take_cause(const std::string& cause, ShownDiscrepancy& shown) {
-  const auto colon = cause.find(": ");
-  shown.event = cause.substr(0, colon);
-  const auto rest = colon == std::string::npos ? "" : cause.substr(colon + 2);
-  const auto is_fluent = [&](const std::string& fluent) { return fluent == rest; };
-  if (std::any_of(shown.fluents.begin(), shown.fluents.end(), is_fluent)) return;
-  // The event failed: the differing fluents are consequences of that.
-  shown.outcome = rest;
-  if (!rest.empty()) shown.fluents.clear();
-}
-
-/// The events before the one that the cause names.
-std::vector<std::string> trace_before(const Json& found, const std::vector<std::string>& events,
-                                      const std::string& event) {
-  const auto divergence = std::max<std::int64_t>(1, whole(found, "first_divergence"));
+/// Number of the event that the cause names, in a trace with these events; none if it has no such
+/// event from the first divergence on.
+std::optional<std::size_t> event_of_cause(const harness::Discrepancy& found,
+                                          const std::vector<std::string>& events) {
+  const auto divergence = std::max<std::int64_t>(1, found.first_divergence);
   const auto from = std::min(static_cast<std::size_t>(divergence - 1), events.size());
-  const auto at =
-      std::find(events.begin() + static_cast<std::ptrdiff_t>(from), events.end(), event);
-  if (at == events.end()) return {};
-  return {events.begin(), at};
+  const auto at = std::find(events.begin() + static_cast<std::ptrdiff_t>(from), events.end(),
+                            found.cause.event);
+  if (at == events.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - events.begin());
 }
 
-ShownDiscrepancy discrepancy_of(const Json& found, bool final, const ShownRun& run,
-                                const std::vector<std::int64_t>& numbers) {
-  ShownDiscrepancy out;
-  const auto trace = whole(found, "trace");
-  out.sample = fmt::format("{}.{}", trace, whole(found, "sample"));
-  out.words = text(found, "words");
-  auto last = differing(member(found, "fluents"));
-  auto first = differing(member(found, "first"));
-  out.fluents = (final && !last.empty()) || first.empty() ? std::move(last) : std::move(first);
-  take_cause(text(member(found, "cause"), "text"), out);
-  if (run.is_executed) {
-    const auto event = whole(member(found, "differs"), "event");
-    const auto& path = member(found, "path");
-    for (std::size_t i = 0; path.is_array() && i < path.size(); ++i) {
-      if (static_cast<std::int64_t>(i) < event) out.trace.push_back(step_text(path[i]));
-    }
-    return out;
+/// How the event of a trace went wrong; empty: it went well.
+std::string outcome_in_trace(const harness::Discrepancy& found, std::optional<std::size_t> event) {
+  const auto& reason = found.cause.reason;
+  if (!reason.empty()) return reason.substr(0, reason.find(':'));
+  const auto& outcomes = found.record.outcomes;
+  if (!event || *event >= outcomes.size()) return {};
+  const auto status = outcomes[*event].status;
+  return status == harness::SimStatus::kOk ? "" : std::string(to_string(status));
+}
+
+/// How the step of an executed plan went that the model does not have so; empty: the model has it,
+/// and not the state after it.
+std::string outcome_in_path(const harness::Discrepancy& found) {
+  const auto at = static_cast<std::size_t>(std::max<std::int64_t>(0, found.path->event));
+  const auto& outcomes = found.record.outcomes;
+  if (found.path->event >= 0 && at < outcomes.size() &&
+      outcomes[at].status != harness::SimStatus::kOk) {
+    return reason_word(outcomes[at]);
   }
-  const auto at = std::find(numbers.begin(), numbers.end(), trace);
-  if (at == numbers.end()) return out;
-  const auto& events = run.traces[static_cast<std::size_t>(at - numbers.begin())].events;
-  out.trace = trace_before(found, events, out.event);
+  if (found.path->impossible) return "happens";
+  if (!found.path->outcome || at >= found.record.path->steps.size()) return {};
+  const auto& step = found.record.path->steps[at];
+  if (!step.object.empty()) return "found " + step.object;
+  return step.succeeded ? "succeeds" : "fails";
+}
+
+std::vector<std::string> steps_before(const harness::Discrepancy& found) {
+  std::vector<std::string> out;
+  for (const auto& step : found.record.path->steps) {
+    if (std::ssize(out) >= found.path->event) break;
+    out.push_back(step_text(step));
+  }
+  return out;
+}
+
+ShownDiscrepancy discrepancy_of(const ReportedDiscrepancy& reported, const RunReport& run) {
+  const auto& found = reported.found;
+  ShownDiscrepancy out;
+  out.sample = reported.id();
+  out.words = reported.words;
+  const bool at_end = run.comparison == to_string(harness::Comparison::kFinal);
+  const bool last = (at_end && !found.fluents.empty()) || found.first.empty();
+  out.fluents = differing(last ? found.fluents : found.first);
+  if (reported.has_cause) out.event = found.cause.event.empty() ? "start" : found.cause.event;
+  if (found.path) {
+    out.outcome = outcome_in_path(found);
+    out.trace = steps_before(found);
+  } else {
+    const auto is_its = [&](const auto& trace) { return trace.number == found.trace; };
+    const auto trace = std::find_if(run.traces->begin(), run.traces->end(), is_its);
+    std::optional<std::size_t> event;
+    if (trace != run.traces->end()) event = event_of_cause(found, trace->events);
+    out.outcome = outcome_in_trace(found, event);
+    if (event)
+      out.trace.assign(trace->events.begin(),
+                       std::next(trace->events.begin(), static_cast<std::ptrdiff_t>(*event)));
+  }
+  // The event failed: the differing fluents are consequences of that.
+  if (!out.outcome.empty()) out.fluents.clear();
   return out;
 }
 
@@ -119,25 +134,20 @@ std::vector<std::string> words_of(const std::string& line) {
 }  // namespace
 
 std::optional<ShownRun> shown_run(std::string_view document) {
-  const auto run = base::parse_json(document);
-  const auto &traces = member(run, "traces"), &discrepancies = member(run, "discrepancies");
-  if (!traces.is_array() || !discrepancies.is_array()) return std::nullopt;
+  const auto run = harness::read_run_report(document);
+  if (!run || !run->traces || !run->discrepancies) return std::nullopt;
   ShownRun out;
-  out.scenario = text(run, "scenario");
-  out.is_executed = text(run, "execution") == "closed-loop";
-  const auto& interrupted = member(run, "interrupted");
-  out.is_complete = text(run, "exploration") != "stopped" && text(run, "status") == "ok" &&
-                    interrupted.is_boolean() && !interrupted.get<bool>();
-  if (out.is_executed) out.is_complete = text(run, "verdict") == "no-discrepancy";
-  std::vector<std::int64_t> numbers;
-  for (const auto& trace : traces) {
-    numbers.push_back(whole(trace, "trace"));
-    out.traces.push_back(
-        {texts(member(trace, "events")), text(trace, "verdict") == "no-discrepancy"});
+  out.scenario = run->scenario;
+  out.is_executed = run->execution == to_string(harness::Execution::kClosedLoop);
+  const auto clean = to_string(harness::CampaignVerdict::kNoDiscrepancy);
+  out.is_complete = out.is_executed ? run->verdict == clean
+                                    : run->exploration != "stopped" && run->status == "ok" &&
+                                          run->interrupted == false;
+  for (const auto& trace : *run->traces) {
+    out.traces.push_back({trace.events, trace.verdict == clean});
   }
-  const bool final = text(run, "compare") == "final";
-  for (const auto& found : discrepancies) {
-    out.discrepancies.push_back(discrepancy_of(found, final, out, numbers));
+  for (const auto& found : *run->discrepancies) {
+    out.discrepancies.push_back(discrepancy_of(found, *run));
   }
   return out;
 }
@@ -155,13 +165,14 @@ std::optional<ShownRun> shown_rates(std::string_view document) {
       ShownDiscrepancy shown;
       shown.counted = true;
       shown.trace = events;
-      const auto words = text(cause, "cause");
-      const auto colon = words.find(": ");
+      const auto words = text(cause, "cause"), event = text(cause, "event");
+      shown.event = event.empty() ? "start" : event;
       // A cause may be a fluent or an outcome, so both are kept: the ledger's entry says which it
       // is.
-      if (colon != std::string::npos) shown.fluents = {words.substr(colon + 2)};
-      take_cause(words, shown);
-      if (!shown.fluents.empty()) shown.outcome = shown.fluents.front();
+      if (const auto head = shown.event + ": "; words.starts_with(head)) {
+        shown.outcome = words.substr(head.size());
+        shown.fluents = {shown.outcome};
+      }
       shown.words = fmt::format("{} in {} of {} runs of trace {}", words, whole(cause, "count"),
                                 whole(trace, "runs"), whole(trace, "trace"));
       out.discrepancies.push_back(std::move(shown));

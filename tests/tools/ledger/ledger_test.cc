@@ -251,7 +251,9 @@ TEST_CASE("bad ledgers and bad runs: a message where it stands") {
   CHECK(cli.ledger({"check", "h"}).code == 3);
   cli.write("h/report.json",
             "{\"traces\":[],\"scenario\":\"a\\u001b[2Jb.yaml\",\"discrepancies\":[{\"trace\":1,"
-            "\"words\":\"\\u001b]0;x\\u0007 \\u202e\",\"cause\":{\"text\":\"\\u001b: b\\nc\"}}]}");
+            "\"words\":\"\\u001b]0;x\\u0007 \\u202e\",\"cause\":{\"text\":\"\\u001b: "
+            "b\\nc\",\"event\":\"\\u001b\","
+            "\"reason\":\"b\\nc\"}}]}");
   const auto odd = cli.ledger({"check", "h"});
   CHECK(odd.code == 1);
   CHECK(odd.out.find('\x1b') == std::string::npos);

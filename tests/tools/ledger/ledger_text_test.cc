@@ -194,6 +194,82 @@ TEST_CASE("an entry that asks for less is known by less; the one that asks for m
   CHECK(hold_against(ledger, "other.yaml", run).findings[0].kind == LedgerFinding::Kind::kUnknown);
 }
 
+/// The only discrepancy of a run in which trace 1 is Go(r2), PickUp(), Go(r2).
+ShownDiscrepancy shown_of(const std::string& discrepancy, const std::string& more = {}) {
+  const auto run = shown_run(
+      R"x({"traces":[{"trace":1,"events":["Go(r2)","PickUp()","Go(r2)"]}],"discrepancies":[)x" +
+      discrepancy + "]" + more + "}");
+  REQUIRE(run);
+  REQUIRE(run->discrepancies.size() == 1);
+  return run->discrepancies.front();
+}
+
+using Names = std::vector<std::string>;
+
+TEST_CASE("event and outcome are known by the fields of the cause, whatever its words are") {
+  // The reason has the outcome.
+  auto shown = shown_of(
+      R"x({"trace":1,"sample":3,"first_divergence":2,"first":[{"fluent":"Held()","observed":false}],)x"
+      R"x("cause":{"text":"in other words: x","reason":"slipped: off","event":"PickUp()"}})x");
+  CHECK(shown.sample == "1.3");
+  CHECK(shown.event == "PickUp()");
+  CHECK(shown.outcome == "slipped");
+  CHECK(shown.fluents.empty());
+  CHECK(shown.trace == Names{"Go(r2)"});
+  // No reason: the status of the event has it, of the one behind the first divergence.
+  const std::string silent =
+      R"x({"trace":1,"first_divergence":3,"first":[{"fluent":"Held()","observed":true}],)x"
+      R"x("cause":{"text":"y","event":"Go(r2)"},"outcomes":[{"status":"ok"},{"status":"ok"},)x";
+  shown = shown_of(silent + R"x({"status":"truncated"}]})x");
+  CHECK(shown.outcome == "truncated");
+  CHECK(shown.fluents.empty());
+  CHECK(shown.trace == Names{"Go(r2)", "PickUp()"});
+  shown = shown_of(silent + R"x({"status":"ok"}]})x");
+  CHECK(shown.outcome.empty());
+  CHECK(shown.fluents == Names{"Held()"});
+  // A fluent that differs at the end had the opposite value where it began to differ.
+  shown = shown_of(
+      R"x({"trace":1,"first_divergence":2,"first":[],"fluents":[{"fluent":"Held()","observed":true}],)x"
+      R"x("cause":{"text":"PickUp(): not Held()","event":"PickUp()","fluents":["Held()"]}})x",
+      R"x(,"compare":"final")x");
+  CHECK(shown.outcome.empty());
+  CHECK(shown.fluents == Names{"Held()"});
+  shown = shown_of(
+      R"x({"trace":1,"first_divergence":0,"first":[{"fluent":"Held()","observed":false}],)x"
+      R"x("cause":{"text":"start: not Held()","event":""}})x");
+  CHECK(shown.event == "start");
+  CHECK(shown.fluents == Names{"not Held()"});
+  CHECK(shown.trace.empty());
+}
+
+TEST_CASE("a step of an executed plan is known by how the model does not have it") {
+  const auto step = [](const std::string& differs, const std::string& outcome,
+                       const std::string& status) {
+    return shown_of(
+        R"x({"trace":1,"first":[{"fluent":"F()","observed":true}],)x"
+        R"x("cause":{"text":"z","event":"Detect(cup)"},)x"
+        R"x("path":[{"event":"Go(r2)","outcome":"failed","condition":"c"},)x"
+        R"x({"event":"Detect(cup)",)x" +
+            outcome + R"x(}],"outcomes":[{"status":"failed","reason":"path: blocked"},{)x" +
+            status + R"x(}],"differs":{"event":1,)x" + differs + "}}",
+        R"x(,"execution":"closed-loop")x");
+  };
+  const std::string ok = R"x("status":"ok")x", found = R"x("outcome":"ok","object":"cup1")x";
+  const auto impossible = step(R"x("impossible":true)x", found, ok);
+  CHECK(impossible.event == "Detect(cup)");
+  CHECK(impossible.outcome == "happens");
+  CHECK(impossible.trace == Names{"Go(r2) fails (c)"});
+  CHECK(step(R"x("outcome":true)x", found, ok).outcome == "found cup1");
+  CHECK(step(R"x("outcome":true)x", R"x("outcome":"ok")x", ok).outcome == "succeeds");
+  CHECK(step(R"x("outcome":true)x", R"x("outcome":"failed")x", ok).outcome == "fails");
+  CHECK(step(R"x("outcome":true)x", R"x("outcome":"failed")x",
+             R"x("status":"failed","reason":"not-found: cup")x")
+            .outcome == "not-found");
+  const auto differs = step(R"x("outcome":false)x", found, ok);
+  CHECK(differs.outcome.empty());
+  CHECK(differs.fluents == Names{"F()"});
+}
+
 TEST_CASE("documents of anything are no runs, and half of one says no more than it has") {
   for (const auto* text :
        {"", "{", "[]", "null", "{}", R"({"traces":[]})", R"({"traces":{},"discrepancies":[]})"}) {
