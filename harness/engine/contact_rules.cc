@@ -1,6 +1,7 @@
 #include "harness/engine/contact_rules.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace parallax::harness {
 namespace {
@@ -62,10 +63,9 @@ ContactRules::ContactRules(const WorldSpec& spec, const WorldLayout& layout) {
   floor_.material = index_of(spec.floor_material);
 
   const std::vector<GripperSpec> all_grippers = grippers(spec);
-  std::uint32_t robot_assembly = 0;  // 0: no robot
   for (std::size_t i = 0; i < layout.bodies.size() && !all_grippers.empty(); ++i) {
     const std::string& name = layout.bodies[layout.bodies.id_at(i)].name;
-    if (name == all_grippers.front().near_pad_body) robot_assembly = layout.assembly_of[i];
+    if (name == all_grippers.front().near_pad_body) robot_assembly_ = layout.assembly_of[i];
   }
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
     const BodyId id = layout.bodies.id_at(i);
@@ -77,7 +77,7 @@ ContactRules::ContactRules(const WorldSpec& spec, const WorldLayout& layout) {
     side.material = index_of(body.material);
     if (layout.is_free[i]) {
       side.role = ShapeRole::kFree;
-    } else if (robot_assembly != 0 && side.assembly == robot_assembly) {
+    } else if (is_robot(side)) {
       side.role = ShapeRole::kPart;
     }
     mark_pad(all_grippers, body.name, side);
@@ -87,6 +87,17 @@ ContactRules::ContactRules(const WorldSpec& spec, const WorldLayout& layout) {
 void ContactRules::note(const ContactSide& a, const ContactSide& b, std::vector<Touch>& touches) {
   note_one(a, b, touches);
   note_one(b, a, touches);
+}
+
+std::string name_of(const WorldLayout& layout, const ContactSide& side) {
+  return side.body ? layout.bodies[*side.body].name : "floor";
+}
+
+Overlap overlap_of(const WorldLayout& layout, const ContactSide& a, const ContactSide& b,
+                   double depth_m) {
+  Overlap overlap{name_of(layout, a), name_of(layout, b), depth_m};
+  if (overlap.second < overlap.first) std::swap(overlap.first, overlap.second);
+  return overlap;
 }
 
 }  // namespace parallax::harness

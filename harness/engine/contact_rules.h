@@ -34,6 +34,9 @@ class ContactRules {
   static bool never_collide(const ContactSide& a, const ContactSide& b) {
     return (a.assembly != 0 && a.assembly == b.assembly) || (a.apart != 0 && a.apart == b.apart);
   }
+  bool is_robot(const ContactSide& side) const {
+    return robot_assembly_ != 0 && side.assembly == robot_assembly_;
+  }
   /// Records the touch of two bodies in contact.
   static void note(const ContactSide& a, const ContactSide& b, std::vector<Touch>& touches);
 
@@ -41,7 +44,15 @@ class ContactRules {
   ContactSide floor_;
   std::vector<ContactSide> sides_;  // by BodyId
   std::uint32_t material_count_ = 0;
-  std::vector<double> friction_;  // (material_count x material_count)
+  std::vector<double> friction_;      // (material_count x material_count)
+  std::uint32_t robot_assembly_ = 0;  // 0: no robot
 };
+
+/// The name of the body, or "floor".
+std::string name_of(const WorldLayout& layout, const ContactSide& side);
+
+/// The overlap of two of them, by sorted names.
+Overlap overlap_of(const WorldLayout& layout, const ContactSide& a, const ContactSide& b,
+                   double depth_m);
 
 }  // namespace parallax::harness

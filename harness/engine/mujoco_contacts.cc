@@ -270,10 +270,6 @@ void replace_collisions() {
   mjCOLLISIONFUNC[mjGEOM_MESH][mjGEOM_MESH] = &collide_hulls;
 }
 
-std::string name_of(const Engine& engine, const ContactSide& side) {
-  return side.body ? engine.layout.bodies[*side.body].name : "floor";
-}
-
 void find_contacts(Engine& engine) {
   constexpr double kLeastFriction = 1e-5;  // of the engine
   mjData& data = *engine.data;
@@ -313,17 +309,15 @@ std::optional<Overlap> deepest_contact(const Engine& engine) {
     if (deepest == nullptr || contact.dist < deepest->dist) deepest = &contact;
   }
   if (deepest == nullptr) return std::nullopt;
-  Overlap overlap{name_of(engine, side_of(engine, deepest->geom1)),
-                  name_of(engine, side_of(engine, deepest->geom2)), -deepest->dist};
-  if (overlap.second < overlap.first) std::swap(overlap.first, overlap.second);
-  return overlap;
+  return overlap_of(engine.layout, side_of(engine, deepest->geom1), side_of(engine, deepest->geom2),
+                    -deepest->dist);
 }
 
 std::optional<Overlap> MujocoWorld::find_obstacle(const Probe& probe, const BodyMask& ignored,
                                                   double tolerance_m) const {
   const auto found = probe_all(*engine_, probe, all_but(ignored));
   if (!found || found->depth_m <= tolerance_m) return std::nullopt;
-  return Overlap{name_of(*engine_, side_of(*engine_, found->geom)), {}, found->depth_m};
+  return Overlap{name_of(engine_->layout, side_of(*engine_, found->geom)), {}, found->depth_m};
 }
 
 bool MujocoWorld::overlaps(const Probe& probe, BodyId id) const {
@@ -335,7 +329,7 @@ std::optional<RayHit> MujocoWorld::cast_ray(const Eigen::Vector3d& from_W,
                                             const BodyMask& ignored) const {
   const auto found = cast(*engine_, from_W, to_W, all_but(ignored));
   if (!found) return std::nullopt;
-  return RayHit{name_of(*engine_, side_of(*engine_, found->geom)), found->depth_m};
+  return RayHit{name_of(engine_->layout, side_of(*engine_, found->geom)), found->depth_m};
 }
 
 std::optional<double> MujocoWorld::ray_meets(const Eigen::Vector3d& from_W,

@@ -96,8 +96,6 @@ struct MujocoWorld::Engine {
 /// Reads the world and finds everything in it again. EngineFault where the engine refuses it.
 void build_engine(MujocoWorld::Engine& engine, const EngineInput& input);
 
-std::string name_of(const MujocoWorld::Engine& engine, const ContactSide& side);
-
 /// Where boxes and hulls touch each other is found by contacts_of and hull_contacts from here on,
 /// in this process: of boxes that lie flat on each other but for a rounding, MuJoCo 2.2.2 leaves
 /// out corners, gives half the depth, and points that are deep in nothing; hulls it has on few

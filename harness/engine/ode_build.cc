@@ -94,19 +94,15 @@ void copy_rotation(const Eigen::Matrix3d& R, double (&out)[12]) {
   }
 }
 
-OdeBuilder::OdeBuilder(const WorldSpec& spec, OdeWorld::Engine& engine)
-    : spec_(spec), engine_(engine) {}
+OdeWorld::Engine::Engine(const WorldSpec& spec)
+    : layout(lay_out(spec)), solver(spec.solver), rules(spec, layout) {}
+
+OdeWorld::Engine::~Engine() = default;
+
+OdeBuilder::OdeBuilder(OdeWorld::Engine& engine) : engine_(engine) {}
 
 void OdeBuilder::build() {
-  engine_.layout = lay_out(spec_);
-  engine_.solver = spec_.solver;
   engine_.touches.resize(engine_.layout.bodies.size());
-  grippers_ = grippers(spec_);
-  if (!grippers_.empty()) {
-    const BodyId pad = *engine_.layout.find_body(grippers_.front().near_pad_body);
-    robot_assembly_ = engine_.layout.assembly_of[pad.index()];
-  }
-  collect_friction();
   create_world();
   create_links();
   create_geoms();
@@ -116,26 +112,6 @@ void OdeBuilder::build() {
   engine_.gantry_orders.resize(engine_.gantries.size());
   engine_.touched.resize(engine_.links.size());
   engine_.resting = std::make_unique<RestingJoints>(engine_);
-}
-
-void OdeBuilder::collect_friction() {
-  materials_.push_back(spec_.floor_material);
-  for (const BodySpec& body : spec_.bodies) materials_.push_back(body.material);
-  std::sort(materials_.begin(), materials_.end());
-  materials_.erase(std::unique(materials_.begin(), materials_.end()), materials_.end());
-  engine_.material_count = static_cast<std::uint32_t>(materials_.size());
-  for (const std::string& a : materials_) {
-    for (const std::string& b : materials_) {
-      const auto found = spec_.friction.pairs.find(std::minmax(a, b));
-      engine_.friction.push_back(found == spec_.friction.pairs.end() ? spec_.friction.fallback
-                                                                     : found->second);
-    }
-  }
-}
-
-std::uint32_t OdeBuilder::material_index(const std::string& name) const {
-  return static_cast<std::uint32_t>(std::lower_bound(materials_.begin(), materials_.end(), name) -
-                                    materials_.begin());
 }
 
 void OdeBuilder::create_world() {
@@ -148,7 +124,7 @@ void OdeBuilder::create_world() {
   engine_.movable_space = dSimpleSpaceCreate(nullptr);
   engine_.contact_group = dJointGroupCreate(0);
 
-  const SolverSpec& solver = spec_.solver;
+  const SolverSpec& solver = engine_.solver;
   dWorldSetGravity(engine_.world, 0.0, 0.0, solver.gravity_m_s2);
   dWorldSetERP(engine_.world, solver.erp);
   dWorldSetCFM(engine_.world, solver.cfm);
@@ -199,34 +175,8 @@ void OdeBuilder::create_links() {
     dBodySetRotation(body, R);
     engine_.links.push_back(body);
     engine_.masses_kg.push_back(mass_kg);
-    engine_.never_sleeps.push_back(robot_assembly_ != 0 &&
-                                   layout.assembly_of[link.members.front().index()] ==
-                                       robot_assembly_);
+    engine_.never_sleeps.push_back(engine_.rules.is_robot(engine_.rules.of(link.members.front())));
   }
-}
-
-GeomInfo OdeBuilder::info_for(BodyId id) const {
-  const WorldLayout& layout = engine_.layout;
-  const BodySpec& body = layout.bodies[id];
-  GeomInfo info{id,
-                layout.link_of[id.index()],
-                layout.assembly_of[id.index()],
-                layout.apart_of[id.index()],
-                material_index(body.material),
-                ContactRole::kWorld,
-                0};
-  if (layout.is_free[id.index()]) {
-    info.role = ContactRole::kFree;
-  } else if (robot_assembly_ != 0 && info.assembly == robot_assembly_) {
-    info.role = ContactRole::kPart;
-  }
-  for (std::uint32_t gripper = 0; gripper < grippers_.size(); ++gripper) {
-    const bool near = body.name == grippers_[gripper].near_pad_body;
-    if (!near && body.name != grippers_[gripper].far_pad_body) continue;
-    info.role = near ? ContactRole::kNearPad : ContactRole::kFarPad;
-    info.gripper = gripper;
-  }
-  return info;
 }
 
 void OdeBuilder::create_geoms() {
@@ -236,7 +186,7 @@ void OdeBuilder::create_geoms() {
   create_link_spaces();
 
   GeomInfo& floor = engine_.geoms.emplace_back();
-  floor.material = material_index(spec_.floor_material);
+  floor.side = engine_.rules.floor();
   dGeomSetData(dCreatePlane(engine_.static_space, 0.0, 0.0, 1.0, 0.0), &floor);
   for (std::size_t i = 0; i < engine_.layout.bodies.size(); ++i) {
     const BodyId id = engine_.layout.bodies.id_at(i);
@@ -246,7 +196,9 @@ void OdeBuilder::create_geoms() {
     }
     if (!body.collides) continue;
     for (const BodyShape& shape : body.shapes) {
-      create_shape(shape, id, engine_.geoms.emplace_back(info_for(id)));
+      create_shape(
+          shape, id,
+          engine_.geoms.emplace_back(GeomInfo{engine_.rules.of(id), engine_.layout.link_of[i]}));
     }
   }
   dSpaceClean(engine_.static_space);
@@ -401,7 +353,7 @@ struct Softness {
 }  // namespace
 
 void OdeBuilder::suspend(const SuspensionSpec& springs, Gantry& gantry) const {
-  const double step_s = spec_.solver.timestep_s;
+  const double step_s = engine_.solver.timestep_s;
   const Softness height(springs.stiffness_n_m, springs.damping_n_s_m, step_s);
   const Softness tilt(springs.stiffness_nm_rad, springs.damping_nm_s, step_s);
   gantry.vertical_share = height.share;
@@ -416,7 +368,7 @@ void OdeBuilder::suspend(const SuspensionSpec& springs, Gantry& gantry) const {
     const bool carried =
         layout.assembly_of[member.index()] == layout.assembly_of[gantry.child_id.index()];
     if (!carried || dBodyGetGravityMode(engine_.links[i]) == 0) continue;
-    weight_n -= engine_.masses_kg[i] * spec_.solver.gravity_m_s2;
+    weight_n -= engine_.masses_kg[i] * engine_.solver.gravity_m_s2;
   }
   gantry.preload_m_s = weight_n * height.cfm;
 }

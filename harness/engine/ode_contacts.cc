@@ -20,7 +20,6 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <utility>
 
 #include "harness/engine/ode_engine.h"
 #include "harness/engine/ode_rest.h"
@@ -42,31 +41,6 @@ void keep_awake(const SolverSpec& solver, dBodyID mover, dBodyID other) {
   const dReal* v = dBodyGetLinearVel(mover);
   const double speed_m_s = std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]);
   if (speed_m_s > kShareOfThreshold * solver.sleep_linear_m_s) dBodyEnable(other);
-}
-
-void note_touch(const GeomInfo& self, const GeomInfo& other, std::vector<Touch>& touches) {
-  if (self.role != ContactRole::kFree) return;
-  Touch& touch = touches[self.body->index()];
-  switch (other.role) {
-    case ContactRole::kWorld:
-    case ContactRole::kFree:
-      touch.support = true;
-      break;
-    case ContactRole::kNearPad:
-      touch.near_pads |= 1U << other.gripper;
-      break;
-    case ContactRole::kFarPad:
-      touch.far_pads |= 1U << other.gripper;
-      break;
-    case ContactRole::kPart:
-      break;
-  }
-}
-
-/// Do both hang together, or are they of one word?
-bool are_kept_apart(const GeomInfo& one, const GeomInfo& other) {
-  return (one.assembly != 0 && one.assembly == other.assembly) ||
-         (one.apart != 0 && one.apart == other.apart);
 }
 
 /// Picks the deepest of many points, then repeatedly the one farthest from those taken. A body with
@@ -103,7 +77,7 @@ int spread_out(const std::array<dContactGeom, kMostHullContacts>& found, int cou
 /// Contact points of a pair, none when they are kept apart.
 int contact_points(dGeomID a, dGeomID b, std::int64_t limit,
                    std::array<dContact, kMostContacts>& out) {
-  if (are_kept_apart(info_of(a), info_of(b))) return 0;
+  if (ContactRules::never_collide(info_of(a).side, info_of(b).side)) return 0;
   const int most = static_cast<int>(std::min<std::int64_t>(limit, kMostContacts));
   if (info_of(a).hull == nullptr && info_of(b).hull == nullptr) {
     return dCollide(a, b, most, &out[0].geom, sizeof(dContact));
@@ -153,7 +127,7 @@ void add_contacts(void* data, dGeomID a, dGeomID b) {
 
   keep_awake(engine.solver, body_a, body_b);
   keep_awake(engine.solver, body_b, body_a);
-  const double mu = engine.friction[info_a.material * engine.material_count + info_b.material];
+  const double mu = engine.rules.friction(info_a.side, info_b.side);
   for (int i = 0; i < count; ++i) {
     const dContactGeom& geom = contacts[static_cast<std::size_t>(i)].geom;
     engine.new_contacts.push_back(
@@ -161,8 +135,7 @@ void add_contacts(void* data, dGeomID a, dGeomID b) {
   }
   if (info_a.link) engine.touched[info_a.link->index()] = true;
   if (info_b.link) engine.touched[info_b.link->index()] = true;
-  note_touch(info_a, info_b, engine.touches);
-  note_touch(info_b, info_a, engine.touches);
+  ContactRules::note(info_a.side, info_b.side, engine.touches);
 }
 
 Eigen::Vector3d in_frame_of(dGeomID geom, const Eigen::Vector3d& p_W) {
@@ -210,7 +183,7 @@ void search_overlap(void* data, dGeomID a, dGeomID b) {
   if (look_inside(data, a, b, &search_overlap)) return;
   auto& search = *static_cast<OverlapSearch*>(data);
   std::array<dContact, kMostContacts> contacts;
-  if (are_kept_apart(info_of(a), info_of(b))) return;
+  if (ContactRules::never_collide(info_of(a).side, info_of(b).side)) return;
   int count = contact_points(a, b, search.engine.solver.max_contacts_per_pair, contacts);
   if (count == 0) {
     const double depth_m = depth_within(a, info_of(a).hull, b, info_of(b).hull);
@@ -246,7 +219,8 @@ void visit(void* data, dGeomID a, dGeomID b) {
   auto& search = *static_cast<ProbeSearch*>(data);
   const dGeomID other = dGeomGetData(a) == nullptr ? b : a;
   const GeomInfo& info = info_of(other);
-  if (info.body ? search.ignored[info.body->index()] : !search.floor_counts) return;
+  const auto& body = info.side.body;
+  if (body ? search.ignored[body->index()] : !search.floor_counts) return;
   std::array<dContactGeom, 8> contacts;
   int count =
       dCollide(a, b, static_cast<int>(contacts.size()), contacts.data(), sizeof(dContactGeom));
@@ -301,10 +275,6 @@ void visit_probe(OdeWorld::Engine& engine, const Probe& probe, ProbeSearch& sear
 
 const GeomInfo& info_of(dxGeom* geom) { return *static_cast<const GeomInfo*>(dGeomGetData(geom)); }
 
-std::string name_of(const OdeWorld::Engine& engine, const GeomInfo& info) {
-  return info.body ? engine.layout.bodies[*info.body].name : "floor";
-}
-
 void find_contacts(OdeWorld::Engine& engine) {
   std::fill(engine.touches.begin(), engine.touches.end(), Touch{});
   std::fill(engine.touched.begin(), engine.touched.end(), false);
@@ -346,9 +316,7 @@ std::optional<Overlap> find_deepest_overlap(OdeWorld::Engine& engine) {
   OverlapSearch search{engine};
   visit_pairs(engine, &search, &search_overlap);
   if (search.first == nullptr) return std::nullopt;
-  Overlap overlap{name_of(engine, *search.first), name_of(engine, *search.second), search.depth_m};
-  if (overlap.second < overlap.first) std::swap(overlap.first, overlap.second);
-  return overlap;
+  return overlap_of(engine.layout, search.first->side, search.second->side, search.depth_m);
 }
 
 std::optional<Overlap> OdeWorld::find_obstacle(const Probe& probe, const BodyMask& ignored,
@@ -356,7 +324,7 @@ std::optional<Overlap> OdeWorld::find_obstacle(const Probe& probe, const BodyMas
   ProbeSearch search{ignored};
   visit_probe(*engine_, probe, search);
   if (search.found == nullptr || search.best <= tolerance_m) return std::nullopt;
-  return Overlap{name_of(*engine_, *search.found), {}, search.best};
+  return Overlap{name_of(engine_->layout, search.found->side), {}, search.best};
 }
 
 bool OdeWorld::overlaps(const Probe& probe, BodyId id) const {
@@ -373,7 +341,7 @@ std::optional<RayHit> OdeWorld::cast_ray(const Eigen::Vector3d& from_W, const Ei
   ProbeSearch search{ignored};
   visit_ray(*engine_, from_W, to_W, search);
   if (search.found == nullptr) return std::nullopt;
-  return RayHit{name_of(*engine_, *search.found), search.best};
+  return RayHit{name_of(engine_->layout, search.found->side), search.best};
 }
 
 std::optional<double> OdeWorld::ray_meets(const Eigen::Vector3d& from_W,

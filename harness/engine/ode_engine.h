@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/engine/contact_rules.h"
 #include "harness/engine/ode_world.h"
 
 // The engine's own types, as its headers name them; only ode_*.cc sees more of them.
@@ -20,17 +21,10 @@ struct dxThreadingImplementation;
 
 namespace parallax::harness {
 
-/// kPart: of the robot.
-enum class ContactRole : std::uint8_t { kWorld, kFree, kNearPad, kFarPad, kPart };
-
 /// The data of a geom for the collision callback.
 struct GeomInfo {
-  std::optional<BodyId> body;  // none: the floor
+  ContactSide side;
   std::optional<LinkId> link;  // none: it never moves
-  std::uint32_t assembly = 0, apart = 0;
-  std::uint32_t material = 0;
-  ContactRole role = ContactRole::kWorld;
-  std::uint32_t gripper = 0;  // of a pad
   const ConvexHull* hull = nullptr;
 };
 
@@ -79,6 +73,7 @@ const GeomInfo& info_of(dxGeom* geom);
 struct OdeWorld::Engine {
   WorldLayout layout;
   SolverSpec solver;
+  ContactRules rules;
   dxWorld* world = nullptr;
   dxThreadingImplementation* threading = nullptr;
   dxSpace* static_space = nullptr;
@@ -96,10 +91,8 @@ struct OdeWorld::Engine {
   std::vector<dxJoint*> hinge_dampers;     // by HingeId; null: none
   std::vector<BodyInLink> in_link;         // by BodyId
   std::vector<GeomInfo> geoms;             // never grows after building: geoms point into it
-  std::uint32_t material_count = 0;
-  std::vector<double> friction;  // (material_count x material_count)
-  std::vector<Touch> touches;    // by BodyId
-  std::vector<bool> touched;     // by LinkId, of the robot: in the next step
+  std::vector<Touch> touches;              // by BodyId
+  std::vector<bool> touched;               // by LinkId, of the robot: in the next step
   std::vector<NewContact> new_contacts;
   std::unique_ptr<RestingJoints> resting;
   std::vector<double> masses_kg;  // by LinkId
@@ -108,10 +101,10 @@ struct OdeWorld::Engine {
   StepStatistics statistics;
   /// The engine's meshes, one for each hull. Held here as long as geoms refer to them.
   std::vector<std::pair<std::shared_ptr<const ConvexHull>, dxTriMeshData*>> meshes;
-};
 
-/// The name of the geom's body, or "floor".
-std::string name_of(const OdeWorld::Engine& engine, const GeomInfo& info);
+  explicit Engine(const WorldSpec& spec);
+  ~Engine();
+};
 
 /// A rotation as the engine wants it: four numbers a row.
 void copy_rotation(const Eigen::Matrix3d& R, double (&out)[12]);
@@ -131,7 +124,7 @@ void destroy_meshes(OdeWorld::Engine& engine);
 /// Creates everything from the layout, in its order. One use per engine.
 class OdeBuilder {
  public:
-  OdeBuilder(const WorldSpec& spec, OdeWorld::Engine& engine);
+  explicit OdeBuilder(OdeWorld::Engine& engine);
   void build();
 
  private:
@@ -147,15 +140,8 @@ class OdeBuilder {
   dxJoint* damper_of(const JointSpec& spec);
   dxJoint* turner_of(const JointSpec& spec);
   dxBody* body_of(const std::string& name) const;
-  void collect_friction();
-  std::uint32_t material_index(const std::string& name) const;
-  GeomInfo info_for(BodyId id) const;
 
-  const WorldSpec& spec_;
   OdeWorld::Engine& engine_;
-  std::vector<GripperSpec> grippers_;
-  std::uint32_t robot_assembly_ = 0;    // 0: no robot
-  std::vector<std::string> materials_;  // sorted
 };
 
 /// The rotation of a gantry's parent in the world.

@@ -129,9 +129,9 @@ void enter_ode() {
 
 }  // namespace
 
-OdeWorld::OdeWorld(const WorldSpec& spec) : engine_(std::make_unique<Engine>()) {
+OdeWorld::OdeWorld(const WorldSpec& spec) : engine_(std::make_unique<Engine>(spec)) {
   enter_ode();
-  OdeBuilder(spec, *engine_).build();
+  OdeBuilder(*engine_).build();
 }
 
 OdeWorld::~OdeWorld() {
