@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/engine/engine_common.h"
 #include "harness/engine/mujoco_module.h"
 #include "harness/engine/mujoco_world.h"
 
@@ -84,7 +85,7 @@ struct MujocoWorld::Engine {
   std::vector<double> preloads_m;              // by GantryId: of its spring; 0: it has none
   std::vector<Touch> touches;                  // by BodyId
   std::vector<double> asked_m_s2, lost_m_s2;   // by row of constraints: of solve_friction
-  std::uint64_t digest = 0;
+  StateDigest digest;
   bool is_broken = false;  // the engine gave up: lost until the next reset
   bool measure_times = false;
   StepStatistics statistics;

@@ -4,14 +4,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <bit>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <mutex>
 
 #include "compiler/base/contract.h"
-#include "compiler/base/hash.h"
 #include "harness/engine/mujoco_engine.h"
 #include "harness/world/angles.h"
 
@@ -20,13 +17,8 @@ namespace {
 
 using Engine = MujocoWorld::Engine;
 
-// The engine's hooks carry no context, so the thread that steps names the counter.
-thread_local std::int64_t* t_warning_count = nullptr;
-
 /// By itself the engine would write to a file in the current folder.
-void count_warning(const char* /*text*/) {
-  if (t_warning_count != nullptr) ++*t_warning_count;
-}
+void count_warning(const char* /*text*/) { MessageCounter::add_one(); }
 
 /// By itself the engine would end the process.
 void throw_fault(const char* text) { throw EngineFault(text); }
@@ -40,44 +32,6 @@ void set_hooks() {
   });
 }
 
-class WarningCounter {
- public:
-  explicit WarningCounter(std::int64_t& count) : previous_(t_warning_count) {
-    t_warning_count = &count;
-  }
-  ~WarningCounter() { t_warning_count = previous_; }
-  WarningCounter(const WarningCounter&) = delete;
-  WarningCounter& operator=(const WarningCounter&) = delete;
-
- private:
-  std::int64_t* previous_;
-};
-
-class LapTimer {
- public:
-  explicit LapTimer(bool on) : on_(on) {
-    if (on_) start_ = Clock::now();
-  }
-  void add_lap_to(double& seconds) {
-    if (!on_) return;
-    const Clock::time_point now = Clock::now();
-    seconds += std::chrono::duration<double>(now - start_).count();
-    start_ = now;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  bool on_;
-  Clock::time_point start_;
-};
-
-void mix_in(std::uint64_t& hash, double value) {
-  hash = base::fnv1a64_word(hash, std::bit_cast<std::uint64_t>(value));
-}
-
-/// No scene comes near this, in m, m/s or rad/s.
-constexpr double kLargestSaneState = 1e6;
-
 /// Folds the state into the digest; false if it is not sane.
 bool fold_in(Engine& engine) {
   const mjModel& model = *engine.model;
@@ -85,8 +39,8 @@ bool fold_in(Engine& engine) {
   bool sane = true;
   const auto fold = [&](const mjtNum* values, int count) {
     for (int i = 0; i < count; ++i) {
-      mix_in(engine.digest, values[i]);
-      sane = sane && std::abs(values[i]) < kLargestSaneState;  // false for NaN, too
+      engine.digest.fold(values[i]);
+      sane = sane && std::abs(values[i]) < kLargestSane;  // false for NaN, too
     }
   };
   fold(data.qpos, model.nq);
@@ -263,14 +217,14 @@ EngineName MujocoWorld::engine() const { return {"mujoco", mj_versionString()}; 
 void MujocoWorld::enter_thread() const {}
 const WorldLayout& MujocoWorld::layout() const { return engine_->layout; }
 double MujocoWorld::timestep_s() const { return engine_->solver.timestep_s; }
-std::uint64_t MujocoWorld::digest() const { return engine_->digest; }
+std::uint64_t MujocoWorld::digest() const { return engine_->digest.value(); }
 const StepStatistics& MujocoWorld::statistics() const { return engine_->statistics; }
 void MujocoWorld::measure_times(bool on) { engine_->measure_times = on; }
 
 std::optional<Overlap> MujocoWorld::reset(std::span<const Placement> placements,
                                           std::uint64_t /*seed*/) {
   PARALLAX_REQUIRE(placements.size() == engine_->layout.bodies.size(), "one placement per body");
-  const WarningCounter counter(engine_->statistics.engine_messages);
+  const MessageCounter counter(engine_->statistics.engine_messages);
   engine_->is_broken = false;
   set_masses(*engine_, placements);
   mj_resetData(engine_->model.get(), engine_->data.get());
@@ -289,7 +243,7 @@ std::optional<Overlap> MujocoWorld::reset(std::span<const Placement> placements,
   }
   std::fill(engine_->touches.begin(), engine_->touches.end(), Touch{});
   update_places(*engine_);
-  engine_->digest = base::kFnvStart;
+  engine_->digest.restart();
   fold_in(*engine_);
 
   find_contacts(*engine_);
@@ -300,7 +254,7 @@ std::optional<Overlap> MujocoWorld::reset(std::span<const Placement> placements,
 
 bool MujocoWorld::step() {
   if (engine_->is_broken) return false;
-  const WarningCounter counter(engine_->statistics.engine_messages);
+  const MessageCounter counter(engine_->statistics.engine_messages);
   ++engine_->statistics.steps;
   try {
     step_once(*engine_);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/engine/contact_rules.h"
+#include "harness/engine/engine_common.h"
 #include "harness/engine/ode_world.h"
 
 // The engine's own types, as its headers name them; only ode_*.cc sees more of them.
@@ -96,7 +97,7 @@ struct OdeWorld::Engine {
   std::vector<NewContact> new_contacts;
   std::unique_ptr<RestingJoints> resting;
   std::vector<double> masses_kg;  // by LinkId
-  std::uint64_t digest = 0;
+  StateDigest digest;
   bool measure_times = false;
   StepStatistics statistics;
   /// The engine's meshes, one for each hull. Held here as long as geoms refer to them.

@@ -4,14 +4,11 @@
 #include <ode/version.h>
 
 #include <Eigen/Geometry>
-#include <bit>
-#include <chrono>
 #include <cmath>
 #include <cstdarg>
 #include <mutex>
 
 #include "compiler/base/contract.h"
-#include "compiler/base/hash.h"
 #include "harness/engine/ode_engine.h"
 #include "harness/engine/ode_rest.h"
 #include "harness/engine/ode_vector.h"
@@ -21,27 +18,10 @@
 namespace parallax::harness {
 namespace {
 
-// The engine's message hook carries no context, so the thread that steps names the counter.
-thread_local std::int64_t* t_message_count = nullptr;
-
+/// They come from the solver of contact forces and are harmless when rare.
 void count_message(int /*number*/, const char* /*text*/, va_list /*arguments*/) {
-  if (t_message_count != nullptr) ++*t_message_count;
+  MessageCounter::add_one();
 }
-
-/// While one exists, messages that the engine prints on this thread are counted into `count`
-/// instead. They come from the solver of contact forces and are harmless when rare.
-class MessageCounter {
- public:
-  explicit MessageCounter(std::int64_t& count) : previous_(t_message_count) {
-    t_message_count = &count;
-  }
-  ~MessageCounter() { t_message_count = previous_; }
-  MessageCounter(const MessageCounter&) = delete;
-  MessageCounter& operator=(const MessageCounter&) = delete;
-
- private:
-  std::int64_t* previous_;
-};
 
 struct ThreadData {
   ThreadData() { dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll)); }
@@ -49,10 +29,6 @@ struct ThreadData {
   ThreadData(const ThreadData&) = delete;
   ThreadData& operator=(const ThreadData&) = delete;
 };
-
-void mix(std::uint64_t& hash, double value) {
-  hash = base::fnv1a64_word(hash, std::bit_cast<std::uint64_t>(value));
-}
 
 void place_at_rest(dxBody* body, const Eigen::Vector3d& p_WL, double yaw_rad, bool never_sleeps) {
   const dQuaternion q = {std::cos(0.5 * yaw_rad), 0.0, 0.0, std::sin(0.5 * yaw_rad)};
@@ -67,10 +43,6 @@ void place_at_rest(dxBody* body, const Eigen::Vector3d& p_WL, double yaw_rad, bo
   dBodyEnable(body);
 }
 
-/// No scene comes near this, in m, m/s or rad/s. Beyond it the state is on its way to infinity,
-/// where the engine would abort the process on an assertion of its own.
-constexpr double kLargestSane = 1e6;
-
 /// Folds the state of all moving bodies into the digest; false if it is not sane.
 bool fold_state(OdeWorld::Engine& engine) {
   bool sane = true;
@@ -80,13 +52,13 @@ bool fold_state(OdeWorld::Engine& engine) {
     const dReal* v = dBodyGetLinearVel(body);
     const dReal* w = dBodyGetAngularVel(body);
     for (int i = 0; i < 3; ++i) {
-      mix(engine.digest, p[i]);
-      mix(engine.digest, v[i]);
-      mix(engine.digest, w[i]);
+      engine.digest.fold(p[i]);
+      engine.digest.fold(v[i]);
+      engine.digest.fold(w[i]);
       // False for NaN, too.
       sane = sane && std::abs(p[i]) + std::abs(v[i]) + std::abs(w[i]) < kLargestSane;
     }
-    for (int i = 0; i < 4; ++i) mix(engine.digest, q[i]);
+    for (int i = 0; i < 4; ++i) engine.digest.fold(q[i]);
   }
   return sane;
 }
@@ -95,24 +67,6 @@ bool fold_state(OdeWorld::Engine& engine) {
 void wake(dxBody* body) {
   if (body != nullptr && dBodyIsEnabled(body) == 0) dBodyEnable(body);
 }
-
-class Stopwatch {
- public:
-  explicit Stopwatch(bool on) : on_(on) {
-    if (on_) start_ = Clock::now();
-  }
-  void add_lap_to(double& seconds) {
-    if (!on_) return;
-    const Clock::time_point now = Clock::now();
-    seconds += std::chrono::duration<double>(now - start_).count();
-    start_ = now;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  bool on_;
-  Clock::time_point start_;
-};
 
 /// Brings the engine up once per process and gives the calling thread its data. Cheap when done
 /// already; called at the start of everything that touches the engine.
@@ -148,7 +102,7 @@ EngineName OdeWorld::engine() const { return {"ode", dODE_VERSION}; }
 void OdeWorld::enter_thread() const { enter_ode(); }
 const WorldLayout& OdeWorld::layout() const { return engine_->layout; }
 double OdeWorld::timestep_s() const { return engine_->solver.timestep_s; }
-std::uint64_t OdeWorld::digest() const { return engine_->digest; }
+std::uint64_t OdeWorld::digest() const { return engine_->digest.value(); }
 const StepStatistics& OdeWorld::statistics() const { return engine_->statistics; }
 void OdeWorld::measure_times(bool on) { engine_->measure_times = on; }
 
@@ -190,7 +144,7 @@ std::optional<Overlap> OdeWorld::reset(std::span<const Placement> placements, st
   }
   std::fill(engine_->touches.begin(), engine_->touches.end(), Touch{});
   dRandSetSeed(static_cast<unsigned long>(seed));  // one generator per process
-  engine_->digest = base::kFnvStart;
+  engine_->digest.restart();
   fold_state(*engine_);
 
   const std::optional<Overlap> overlap = find_deepest_overlap(*engine_);
@@ -201,16 +155,16 @@ std::optional<Overlap> OdeWorld::reset(std::span<const Placement> placements, st
 bool OdeWorld::step() {
   std::int64_t complaints = 0;
   const MessageCounter counter(complaints);
-  Stopwatch stopwatch(engine_->measure_times);
+  LapTimer timer(engine_->measure_times);
   find_contacts(*engine_);
-  stopwatch.add_lap_to(engine_->statistics.collide_s);
+  timer.add_lap_to(engine_->statistics.collide_s);
   engine_->resting->begin_step(engine_->touched);
   carry_out_orders(*this, *engine_);
   solve_step(*engine_, complaints);
   engine_->statistics.engine_messages += complaints;
   engine_->resting->end_step();
   engine_->statistics.joints_at_rest = engine_->resting->resting();
-  stopwatch.add_lap_to(engine_->statistics.solve_s);
+  timer.add_lap_to(engine_->statistics.solve_s);
   dJointGroupEmpty(engine_->contact_group);
   ++engine_->statistics.steps;
   return fold_state(*engine_);
