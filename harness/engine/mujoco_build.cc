@@ -120,7 +120,6 @@ void build_engine(MujocoWorld::Engine& engine, const EngineInput& input) {
   engine.model.reset(read_model(world.text));
   engine.data.reset(mj_makeData(engine.model.get()));
   if (engine.data == nullptr) throw EngineFault("MuJoCo has no memory for the world");
-  engine.touches.resize(engine.layout.bodies.size());
   find_joints(engine);
   preload(engine);
   find_geoms(engine, world.geom_bodies);

@@ -124,29 +124,6 @@ std::optional<double> depth_of(const Engine& engine, int a, int b) {
   return deepest;
 }
 
-struct Found {
-  int geom = -1;
-  double depth_m = 0.0;
-};
-
-/// The deepest overlap with a geom that `counts` takes.
-template <typename Counts>
-std::optional<Found> probe_all(Engine& engine, const Probe& probe, const Counts& counts) {
-  const mjModel& model = *engine.model;
-  const int own = put_probe(engine, probe);
-  const double radius_m = model.geom_rbound[own];
-  const Eigen::Vector3d p_W = place_of(*engine.data, own);
-  std::optional<Found> found;
-  for (int geom = 0; geom < model.ngeom; ++geom) {
-    const ContactSide* side = engine.sides[static_cast<std::size_t>(geom)];
-    if (side == nullptr || !counts(*side)) continue;
-    if (!is_near(model, *engine.data, geom, p_W, radius_m)) continue;
-    const auto depth = depth_of(engine, own, geom);
-    if (depth && (!found || *depth > found->depth_m)) found = Found{geom, *depth};
-  }
-  return found;
-}
-
 /// Where a ray of unit direction comes into a hull, or out of it where it begins in it.
 std::optional<double> ray_meets_hull(const ConvexHull& hull, const Eigen::Vector3d& from_H,
                                      const Eigen::Vector3d& direction_H) {
@@ -186,32 +163,6 @@ std::optional<double> ray_meets_geom(const Engine& engine, int geom, const Eigen
       mju_rayGeom(data.geom_xpos + 3 * geom, data.geom_xmat + 9 * geom, model.geom_size + 3 * geom,
                   from.data(), direction.data(), model.geom_type[geom]);
   return way_m >= 0.0 ? std::optional(way_m) : std::nullopt;
-}
-
-/// The first geom that `counts` takes on the way.
-template <typename Counts>
-std::optional<Found> cast(const Engine& engine, const Eigen::Vector3d& from,
-                          const Eigen::Vector3d& to, const Counts& counts) {
-  const double length_m = (to - from).norm();
-  if (length_m == 0.0) return std::nullopt;
-  const Eigen::Vector3d direction = (to - from) / length_m;
-  std::optional<Found> found;
-  for (int geom = 0; geom < engine.model->ngeom; ++geom) {
-    const ContactSide* side = engine.sides[static_cast<std::size_t>(geom)];
-    if (side == nullptr || !counts(*side)) continue;
-    const auto way_m = ray_meets_geom(engine, geom, from, direction);
-    if (!way_m || *way_m > length_m || (found && *way_m >= found->depth_m)) continue;
-    found = Found{geom, *way_m};
-  }
-  return found;
-}
-
-auto all_but(const BodyMask& ignored) {
-  return [&ignored](const ContactSide& side) { return !side.body || !ignored[side.body->index()]; };
-}
-
-auto only(BodyId id) {
-  return [id](const ContactSide& side) { return side.body == id; };
 }
 
 PlacedBox box_of(const mjModel& model, const mjData& data, int geom) {
@@ -313,30 +264,38 @@ std::optional<Overlap> deepest_contact(const Engine& engine) {
                     -deepest->dist);
 }
 
-std::optional<Overlap> MujocoWorld::find_obstacle(const Probe& probe, const BodyMask& ignored,
-                                                  double tolerance_m) const {
-  const auto found = probe_all(*engine_, probe, all_but(ignored));
-  if (!found || found->depth_m <= tolerance_m) return std::nullopt;
-  return Overlap{name_of(engine_->layout, side_of(*engine_, found->geom)), {}, found->depth_m};
+std::optional<Met> MujocoWorld::deepest_met(const Probe& probe, const Sought& sought) const {
+  Engine& engine = *engine_;
+  const mjModel& model = *engine.model;
+  const int own = put_probe(engine, probe);
+  const double radius_m = model.geom_rbound[own];
+  const Eigen::Vector3d p_W = place_of(*engine.data, own);
+  std::optional<Met> met;
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    const ContactSide* side = engine.sides[static_cast<std::size_t>(geom)];
+    if (side == nullptr || !sought.includes(*side)) continue;
+    if (!is_near(model, *engine.data, geom, p_W, radius_m)) continue;
+    const auto depth = depth_of(engine, own, geom);
+    if (depth && (!met || *depth > met->metres)) met = Met{side, *depth};
+  }
+  return met;
 }
 
-bool MujocoWorld::overlaps(const Probe& probe, BodyId id) const {
-  return probe_all(*engine_, probe, only(id)).has_value();
-}
-
-std::optional<RayHit> MujocoWorld::cast_ray(const Eigen::Vector3d& from_W,
-                                            const Eigen::Vector3d& to_W,
-                                            const BodyMask& ignored) const {
-  const auto found = cast(*engine_, from_W, to_W, all_but(ignored));
-  if (!found) return std::nullopt;
-  return RayHit{name_of(engine_->layout, side_of(*engine_, found->geom)), found->depth_m};
-}
-
-std::optional<double> MujocoWorld::ray_meets(const Eigen::Vector3d& from_W,
-                                             const Eigen::Vector3d& to_W, BodyId id) const {
-  const auto found = cast(*engine_, from_W, to_W, only(id));
-  if (!found) return std::nullopt;
-  return found->depth_m;
+std::optional<Met> MujocoWorld::first_met(const Eigen::Vector3d& from_W,
+                                          const Eigen::Vector3d& to_W, const Sought& sought) const {
+  const Engine& engine = *engine_;
+  const double length_m = (to_W - from_W).norm();
+  if (length_m == 0.0) return std::nullopt;
+  const Eigen::Vector3d direction = (to_W - from_W) / length_m;
+  std::optional<Met> met;
+  for (int geom = 0; geom < engine.model->ngeom; ++geom) {
+    const ContactSide* side = engine.sides[static_cast<std::size_t>(geom)];
+    if (side == nullptr || !sought.includes(*side)) continue;
+    const auto way_m = ray_meets_geom(engine, geom, from_W, direction);
+    if (!way_m || *way_m > length_m || (met && *way_m >= met->metres)) continue;
+    met = Met{side, *way_m};
+  }
+  return met;
 }
 
 }  // namespace parallax::harness

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "harness/engine/engine_common.h"
 #include "harness/engine/mujoco_module.h"
 #include "harness/engine/mujoco_world.h"
 
@@ -64,11 +63,8 @@ struct MeshHull {
   Eigen::Matrix3d R_HG = Eigen::Matrix3d::Identity();
 };
 
-/// The state behind MujocoWorld.
-struct MujocoWorld::Engine {
-  WorldLayout layout;
-  SolverSpec solver;
-  ContactRules rules;
+/// The state behind MujocoWorld. The frame of a link is that of the tree.
+struct MujocoWorld::Engine final : EngineState {
   LinkTree tree;
   std::unique_ptr<mjModel_, ModelDeleter> model;
   std::unique_ptr<mjData_, DataDeleter> data;
@@ -80,18 +76,15 @@ struct MujocoWorld::Engine {
   std::vector<MeshHull> hulls;
   std::vector<const MeshHull*> hull_of;        // by the engine's number of a geom; null: none
   std::vector<double> targets;                 // by degree of freedom: the motor's velocity
-  std::vector<double> masses_kg;               // by LinkId
   std::vector<Eigen::Vector3d> moments_kg_m2;  // by LinkId: principal, of the specified mass
   std::vector<double> preloads_m;              // by GantryId: of its spring; 0: it has none
-  std::vector<Touch> touches;                  // by BodyId
   std::vector<double> asked_m_s2, lost_m_s2;   // by row of constraints: of solve_friction
-  StateDigest digest;
-  bool is_broken = false;  // the engine gave up: lost until the next reset
-  bool measure_times = false;
-  StepStatistics statistics;
+  bool is_broken = false;                      // the engine gave up: lost until the next reset
 
   explicit Engine(const EngineInput& input)
-      : layout(input.layout), solver(input.spec.solver), rules(input.rules), tree(input.tree) {}
+      : EngineState(input.spec, input.layout), tree(input.tree) {
+    in_link = tree.in_link;
+  }
 };
 
 /// Reads the world and finds everything in it again. EngineFault where the engine refuses it.

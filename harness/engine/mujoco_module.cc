@@ -55,8 +55,7 @@ std::unique_ptr<PhysicsWorld> make_mujoco_world(const WorldSpec& spec) {
   const WorldLayout layout = lay_out(spec);
   const auto tree = grow_tree(layout);
   PARALLAX_REQUIRE(std::holds_alternative<LinkTree>(tree), "a world whose joints make a tree");
-  const ContactRules rules(spec, layout);
-  std::unique_ptr<PhysicsWorld> world(made({spec, layout, rules, std::get<LinkTree>(tree)}));
+  std::unique_ptr<PhysicsWorld> world(made({spec, layout, std::get<LinkTree>(tree)}));
   PARALLAX_REQUIRE(world != nullptr, "an engine that is there, of this version");
   return world;
 }

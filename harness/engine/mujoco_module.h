@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 
-#include "harness/engine/contact_rules.h"
 #include "harness/engine/link_tree.h"
 #include "harness/engine/physics_world.h"
 
@@ -20,7 +19,6 @@ inline constexpr const char* kMujocoMaker = "parallax_make_mujoco_world";
 struct EngineInput {
   const WorldSpec& spec;
   const WorldLayout& layout;
-  const ContactRules& rules;
   const LinkTree& tree;
 };
 

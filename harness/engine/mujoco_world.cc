@@ -32,22 +32,6 @@ void set_hooks() {
   });
 }
 
-/// Folds the state into the digest; false if it is not sane.
-bool fold_in(Engine& engine) {
-  const mjModel& model = *engine.model;
-  const mjData& data = *engine.data;
-  bool sane = true;
-  const auto fold = [&](const mjtNum* values, int count) {
-    for (int i = 0; i < count; ++i) {
-      engine.digest.fold(values[i]);
-      sane = sane && std::abs(values[i]) < kLargestSane;  // false for NaN, too
-    }
-  };
-  fold(data.qpos, model.nq);
-  fold(data.qvel, model.nv);
-  return sane;
-}
-
 Eigen::Matrix3d about_z(double angle_rad) {
   return Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
@@ -185,15 +169,6 @@ bool has_overflowed(const mjData& data) {
   return data.warning[mjWARN_CONTACTFULL].number + data.warning[mjWARN_CNSTRFULL].number > 0;
 }
 
-Eigen::Vector3d link_place(const Engine& engine, LinkId id) {
-  return Eigen::Map<const Eigen::Vector3d>(engine.data->xpos + 3 * engine.bodies[id.index()]);
-}
-
-Eigen::Matrix3d link_rotation(const Engine& engine, LinkId id) {
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(
-      engine.data->xmat + 9 * engine.bodies[id.index()]);
-}
-
 void drive(Engine& engine, int dof, double velocity, double most) {
   engine.model->dof_frictionloss[dof] = most;
   engine.targets[static_cast<std::size_t>(dof)] = velocity;
@@ -204,9 +179,9 @@ void drive(Engine& engine, int dof, double velocity, double most) {
 void ModelDeleter::operator()(mjModel* model) const { mj_deleteModel(model); }
 void DataDeleter::operator()(mjData* data) const { mj_deleteData(data); }
 
-MujocoWorld::MujocoWorld(const EngineInput& input) {
+MujocoWorld::MujocoWorld(const EngineInput& input)
+    : EngineWorld(std::make_unique<Engine>(input)), engine_(static_cast<Engine*>(&state())) {
   set_hooks();
-  engine_ = std::make_unique<Engine>(input);
   build_engine(*engine_, input);
   update_places(*engine_);
 }
@@ -215,41 +190,36 @@ MujocoWorld::~MujocoWorld() = default;
 
 EngineName MujocoWorld::engine() const { return {"mujoco", mj_versionString()}; }
 void MujocoWorld::enter_thread() const {}
-const WorldLayout& MujocoWorld::layout() const { return engine_->layout; }
-double MujocoWorld::timestep_s() const { return engine_->solver.timestep_s; }
-std::uint64_t MujocoWorld::digest() const { return engine_->digest.value(); }
-const StepStatistics& MujocoWorld::statistics() const { return engine_->statistics; }
-void MujocoWorld::measure_times(bool on) { engine_->measure_times = on; }
 
-std::optional<Overlap> MujocoWorld::reset(std::span<const Placement> placements,
-                                          std::uint64_t /*seed*/) {
-  PARALLAX_REQUIRE(placements.size() == engine_->layout.bodies.size(), "one placement per body");
+void MujocoWorld::place(std::span<const Placement> placements, std::uint64_t /*seed*/) {
   const MessageCounter counter(engine_->statistics.engine_messages);
   engine_->is_broken = false;
   set_masses(*engine_, placements);
   mj_resetData(engine_->model.get(), engine_->data.get());
   for (const LinkId id : engine_->tree.order) set_joint(*engine_, id, placements);
   carry_weightless(*engine_);
-  for (std::size_t i = 0; i < engine_->sliders.size(); ++i) {
-    const SliderId id = engine_->layout.sliders.id_at(i);
-    set_motor(id, 0.0, engine_->layout.sliders[id].max_force_n);
-  }
-  for (std::size_t i = 0; i < engine_->hinges.size(); ++i) {
-    const HingeId id = engine_->layout.hinges.id_at(i);
-    set_hinge_motor(id, 0.0, engine_->layout.hinges[id].max_torque_nm);
-  }
-  for (std::size_t i = 0; i < engine_->gantries.size(); ++i) {
-    set_gantry(engine_->layout.gantries.id_at(i), Eigen::Vector3d::Zero(), 0.0);
-  }
-  std::fill(engine_->touches.begin(), engine_->touches.end(), Touch{});
   update_places(*engine_);
-  engine_->digest.restart();
-  fold_in(*engine_);
+}
 
+bool MujocoWorld::fold_state() {
+  const mjModel& model = *engine_->model;
+  const mjData& data = *engine_->data;
+  bool sane = true;
+  const auto fold = [&](const mjtNum* values, int count) {
+    for (int i = 0; i < count; ++i) {
+      engine_->digest.fold(values[i]);
+      sane = sane && std::abs(values[i]) < kLargestSane;  // false for NaN, too
+    }
+  };
+  fold(data.qpos, model.nq);
+  fold(data.qvel, model.nv);
+  return sane;
+}
+
+std::optional<Overlap> MujocoWorld::deepest_overlap() {
+  const MessageCounter counter(engine_->statistics.engine_messages);
   find_contacts(*engine_);
-  const std::optional<Overlap> overlap = deepest_contact(*engine_);
-  if (overlap && overlap->depth_m > engine_->solver.start_penetration_m) return overlap;
-  return std::nullopt;
+  return deepest_contact(*engine_);
 }
 
 bool MujocoWorld::step() {
@@ -263,7 +233,7 @@ bool MujocoWorld::step() {
     engine_->is_broken = true;
     return false;
   }
-  return fold_in(*engine_) && !has_overflowed(*engine_->data);
+  return fold_state() && !has_overflowed(*engine_->data);
 }
 
 double MujocoWorld::slider_position_m(SliderId id) const {
@@ -325,25 +295,14 @@ void MujocoWorld::set_gantry(GantryId id, const Eigen::Vector3d& velocity_m_s,
   drive(*engine_, dof + 3, yaw_rate_rad_s, spec.max_torque_nm);
 }
 
-double MujocoWorld::mass_kg(BodyId id) const {
-  const std::optional<LinkId> link = engine_->layout.link_of[id.index()];
-  return link ? engine_->masses_kg[link->index()] : 0.0;
+Eigen::Vector3d MujocoWorld::link_position(LinkId id) const {
+  return Eigen::Map<const Eigen::Vector3d>(engine_->data->xpos + 3 * engine_->bodies[id.index()]);
 }
 
-Eigen::Vector3d MujocoWorld::position(BodyId id) const {
-  const PoseInLink& place = engine_->tree.in_link[id.index()];
-  const std::optional<LinkId> link = engine_->layout.link_of[id.index()];
-  if (!link) return place.p_LB;
-  return link_place(*engine_, *link) + link_rotation(*engine_, *link) * place.p_LB;
+Eigen::Matrix3d MujocoWorld::link_rotation(LinkId id) const {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(
+      engine_->data->xmat + 9 * engine_->bodies[id.index()]);
 }
-
-Eigen::Matrix3d MujocoWorld::rotation(BodyId id) const {
-  const PoseInLink& place = engine_->tree.in_link[id.index()];
-  const std::optional<LinkId> link = engine_->layout.link_of[id.index()];
-  return link ? Eigen::Matrix3d(link_rotation(*engine_, *link) * place.R_LB) : place.R_LB;
-}
-
-const Touch& MujocoWorld::touch(BodyId id) const { return engine_->touches[id.index()]; }
 
 }  // namespace parallax::harness
 

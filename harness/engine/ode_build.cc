@@ -67,7 +67,7 @@ void put(dMass& mass, const Eigen::Matrix3d& R, const Eigen::Vector3d& p) {
 }
 
 /// Mass of a body whose frame is placed in the link as `place` says.
-dMass mass_in_link(const BodySpec& body, const BodyInLink& place) {
+dMass mass_in_link(const BodySpec& body, const PoseInLink& place) {
   dMass total;
   if (body.inertia) {
     const Eigen::Matrix3d& I = body.inertia->I_C_kg_m2;
@@ -94,15 +94,13 @@ void copy_rotation(const Eigen::Matrix3d& R, double (&out)[12]) {
   }
 }
 
-OdeWorld::Engine::Engine(const WorldSpec& spec)
-    : layout(lay_out(spec)), solver(spec.solver), rules(spec, layout) {}
+OdeWorld::Engine::Engine(const WorldSpec& spec) : EngineState(spec, lay_out(spec)) {}
 
 OdeWorld::Engine::~Engine() = default;
 
 OdeBuilder::OdeBuilder(OdeWorld::Engine& engine) : engine_(engine) {}
 
 void OdeBuilder::build() {
-  engine_.touches.resize(engine_.layout.bodies.size());
   create_world();
   create_links();
   create_geoms();
@@ -157,7 +155,7 @@ void OdeBuilder::create_links() {
     bool gravity = false;
     for (const BodyId id : link.members) {
       const BodySpec& body = layout.bodies[id];
-      BodyInLink& place = engine_.in_link[id.index()];
+      PoseInLink& place = engine_.in_link[id.index()];
       place.p_LB = R_LW * (body.p_WB - p_WL);
       place.R_LB = rotation_z(body.yaw_rad - first.yaw_rad);
       const dMass part = mass_in_link(body, place);
@@ -192,7 +190,7 @@ void OdeBuilder::create_geoms() {
     const BodyId id = engine_.layout.bodies.id_at(i);
     const BodySpec& body = engine_.layout.bodies[id];
     if (!engine_.layout.link_of[i]) {
-      engine_.in_link[i] = BodyInLink{body.p_WB, rotation_z(body.yaw_rad)};
+      engine_.in_link[i] = PoseInLink{body.p_WB, rotation_z(body.yaw_rad)};
     }
     if (!body.collides) continue;
     for (const BodyShape& shape : body.shapes) {
@@ -218,7 +216,7 @@ void OdeBuilder::create_link_spaces() {
 
 void OdeBuilder::create_shape(const BodyShape& shape, BodyId id, GeomInfo& info) {
   const std::optional<LinkId> link = engine_.layout.link_of[id.index()];
-  const BodyInLink& place = engine_.in_link[id.index()];
+  const PoseInLink& place = engine_.in_link[id.index()];
   const Eigen::Vector3d p = place.p_LB + place.R_LB * shape.p_BS;
   dxGeom* geom =
       create_geom(engine_, link ? engine_.link_spaces[link->index()] : engine_.static_space,

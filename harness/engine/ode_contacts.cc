@@ -205,11 +205,9 @@ void visit_pairs(OdeWorld::Engine& engine, void* data, dNearCallback* callback) 
 }
 
 struct ProbeSearch {
-  const BodyMask& ignored;
-  bool floor_counts = true;
-  double best = 0.0;  // depth of an overlap, or distance along a ray
+  const Sought& sought;
   bool nearest = false;
-  const GeomInfo* found = nullptr;
+  std::optional<Met> met = {};
   const ConvexHull* probe_hull = nullptr;
 };
 
@@ -219,8 +217,7 @@ void visit(void* data, dGeomID a, dGeomID b) {
   auto& search = *static_cast<ProbeSearch*>(data);
   const dGeomID other = dGeomGetData(a) == nullptr ? b : a;
   const GeomInfo& info = info_of(other);
-  const auto& body = info.side.body;
-  if (body ? search.ignored[body->index()] : !search.floor_counts) return;
+  if (!search.sought.includes(info.side)) return;
   std::array<dContactGeom, 8> contacts;
   int count =
       dCollide(a, b, static_cast<int>(contacts.size()), contacts.data(), sizeof(dContactGeom));
@@ -232,10 +229,8 @@ void visit(void* data, dGeomID a, dGeomID b) {
   for (int i = 0; i < count; ++i) {
     const double depth = contacts[static_cast<std::size_t>(i)].depth;
     const bool better =
-        search.found == nullptr || (search.nearest ? depth < search.best : depth > search.best);
-    if (!better) continue;
-    search.best = depth;
-    search.found = &info;
+        !search.met || (search.nearest ? depth < search.met->metres : depth > search.met->metres);
+    if (better) search.met = Met{&info.side, depth};
   }
 }
 
@@ -319,40 +314,17 @@ std::optional<Overlap> find_deepest_overlap(OdeWorld::Engine& engine) {
   return overlap_of(engine.layout, search.first->side, search.second->side, search.depth_m);
 }
 
-std::optional<Overlap> OdeWorld::find_obstacle(const Probe& probe, const BodyMask& ignored,
-                                               double tolerance_m) const {
-  ProbeSearch search{ignored};
+std::optional<Met> OdeWorld::deepest_met(const Probe& probe, const Sought& sought) const {
+  ProbeSearch search{sought};
   visit_probe(*engine_, probe, search);
-  if (search.found == nullptr || search.best <= tolerance_m) return std::nullopt;
-  return Overlap{name_of(engine_->layout, search.found->side), {}, search.best};
+  return search.met;
 }
 
-bool OdeWorld::overlaps(const Probe& probe, BodyId id) const {
-  BodyMask others(engine_->layout.bodies.size(), true);
-  others[id.index()] = false;
-  ProbeSearch search{others};
-  search.floor_counts = false;
-  visit_probe(*engine_, probe, search);
-  return search.found != nullptr;
-}
-
-std::optional<RayHit> OdeWorld::cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
-                                         const BodyMask& ignored) const {
-  ProbeSearch search{ignored};
+std::optional<Met> OdeWorld::first_met(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
+                                       const Sought& sought) const {
+  ProbeSearch search{sought};
   visit_ray(*engine_, from_W, to_W, search);
-  if (search.found == nullptr) return std::nullopt;
-  return RayHit{name_of(engine_->layout, search.found->side), search.best};
-}
-
-std::optional<double> OdeWorld::ray_meets(const Eigen::Vector3d& from_W,
-                                          const Eigen::Vector3d& to_W, BodyId id) const {
-  BodyMask others(engine_->layout.bodies.size(), true);
-  others[id.index()] = false;
-  ProbeSearch search{others};
-  search.floor_counts = false;
-  visit_ray(*engine_, from_W, to_W, search);
-  if (search.found == nullptr) return std::nullopt;
-  return search.best;
+  return search.met;
 }
 
 }  // namespace parallax::harness

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "harness/engine/contact_rules.h"
-#include "harness/engine/engine_common.h"
 #include "harness/engine/ode_world.h"
 
 // The engine's own types, as its headers name them; only ode_*.cc sees more of them.
@@ -61,20 +59,11 @@ struct NewContact {
 
 class RestingJoints;
 
-/// Pose of body B in its link L (in the world for a static body).
-struct BodyInLink {
-  Eigen::Vector3d p_LB = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d R_LB = Eigen::Matrix3d::Identity();
-};
-
 /// The data of a geom of the world.
 const GeomInfo& info_of(dxGeom* geom);
 
-/// The state behind OdeWorld.
-struct OdeWorld::Engine {
-  WorldLayout layout;
-  SolverSpec solver;
-  ContactRules rules;
+/// The state behind OdeWorld. The frame of a link is in its centre of mass.
+struct OdeWorld::Engine final : EngineState {
   dxWorld* world = nullptr;
   dxThreadingImplementation* threading = nullptr;
   dxSpace* static_space = nullptr;
@@ -90,21 +79,15 @@ struct OdeWorld::Engine {
   std::vector<dxJoint*> hinges;            // by HingeId
   std::vector<dxJoint*> turners;           // by HingeId: their motors
   std::vector<dxJoint*> hinge_dampers;     // by HingeId; null: none
-  std::vector<BodyInLink> in_link;         // by BodyId
   std::vector<GeomInfo> geoms;             // never grows after building: geoms point into it
-  std::vector<Touch> touches;              // by BodyId
   std::vector<bool> touched;               // by LinkId, of the robot: in the next step
   std::vector<NewContact> new_contacts;
   std::unique_ptr<RestingJoints> resting;
-  std::vector<double> masses_kg;  // by LinkId
-  StateDigest digest;
-  bool measure_times = false;
-  StepStatistics statistics;
   /// The engine's meshes, one for each hull. Held here as long as geoms refer to them.
   std::vector<std::pair<std::shared_ptr<const ConvexHull>, dxTriMeshData*>> meshes;
 
   explicit Engine(const WorldSpec& spec);
-  ~Engine();
+  ~Engine() override;
 };
 
 /// A rotation as the engine wants it: four numbers a row.

@@ -8,7 +8,6 @@
 #include <cstdarg>
 #include <mutex>
 
-#include "compiler/base/contract.h"
 #include "harness/engine/ode_engine.h"
 #include "harness/engine/ode_rest.h"
 #include "harness/engine/ode_vector.h"
@@ -43,26 +42,6 @@ void place_at_rest(dxBody* body, const Eigen::Vector3d& p_WL, double yaw_rad, bo
   dBodyEnable(body);
 }
 
-/// Folds the state of all moving bodies into the digest; false if it is not sane.
-bool fold_state(OdeWorld::Engine& engine) {
-  bool sane = true;
-  for (dxBody* const body : engine.links) {
-    const dReal* p = dBodyGetPosition(body);
-    const dReal* q = dBodyGetQuaternion(body);
-    const dReal* v = dBodyGetLinearVel(body);
-    const dReal* w = dBodyGetAngularVel(body);
-    for (int i = 0; i < 3; ++i) {
-      engine.digest.fold(p[i]);
-      engine.digest.fold(v[i]);
-      engine.digest.fold(w[i]);
-      // False for NaN, too.
-      sane = sane && std::abs(p[i]) + std::abs(v[i]) + std::abs(w[i]) < kLargestSane;
-    }
-    for (int i = 0; i < 4; ++i) engine.digest.fold(q[i]);
-  }
-  return sane;
-}
-
 /// The engine does not notice that a joint has changed, so sleeping bodies would stay asleep.
 void wake(dxBody* body) {
   if (body != nullptr && dBodyIsEnabled(body) == 0) dBodyEnable(body);
@@ -83,7 +62,8 @@ void enter_ode() {
 
 }  // namespace
 
-OdeWorld::OdeWorld(const WorldSpec& spec) : engine_(std::make_unique<Engine>(spec)) {
+OdeWorld::OdeWorld(const WorldSpec& spec)
+    : EngineWorld(std::make_unique<Engine>(spec)), engine_(static_cast<Engine*>(&state())) {
   enter_ode();
   OdeBuilder(*engine_).build();
 }
@@ -100,14 +80,8 @@ OdeWorld::~OdeWorld() {
 
 EngineName OdeWorld::engine() const { return {"ode", dODE_VERSION}; }
 void OdeWorld::enter_thread() const { enter_ode(); }
-const WorldLayout& OdeWorld::layout() const { return engine_->layout; }
-double OdeWorld::timestep_s() const { return engine_->solver.timestep_s; }
-std::uint64_t OdeWorld::digest() const { return engine_->digest.value(); }
-const StepStatistics& OdeWorld::statistics() const { return engine_->statistics; }
-void OdeWorld::measure_times(bool on) { engine_->measure_times = on; }
 
-std::optional<Overlap> OdeWorld::reset(std::span<const Placement> placements, std::uint64_t seed) {
-  PARALLAX_REQUIRE(placements.size() == engine_->layout.bodies.size(), "one placement per body");
+void OdeWorld::place(std::span<const Placement> placements, std::uint64_t seed) {
   enter_ode();
   dJointGroupEmpty(engine_->contact_group);
   // A space visits its geoms in the order in which they were last marked as moved. Once it is
@@ -131,26 +105,29 @@ std::optional<Overlap> OdeWorld::reset(std::span<const Placement> placements, st
     ++index;
   }
   engine_->resting->reset();
-  for (std::size_t i = 0; i < engine_->sliders.size(); ++i) {
-    const SliderId id = engine_->layout.sliders.id_at(i);
-    set_motor(id, 0.0, engine_->layout.sliders[id].max_force_n);
-  }
-  for (std::size_t i = 0; i < engine_->gantries.size(); ++i) {
-    set_gantry(engine_->layout.gantries.id_at(i), Eigen::Vector3d::Zero(), 0.0);
-  }
-  for (std::size_t i = 0; i < engine_->hinges.size(); ++i) {
-    const HingeId id = engine_->layout.hinges.id_at(i);
-    set_hinge_motor(id, 0.0, engine_->layout.hinges[id].max_torque_nm);
-  }
-  std::fill(engine_->touches.begin(), engine_->touches.end(), Touch{});
   dRandSetSeed(static_cast<unsigned long>(seed));  // one generator per process
-  engine_->digest.restart();
-  fold_state(*engine_);
-
-  const std::optional<Overlap> overlap = find_deepest_overlap(*engine_);
-  if (overlap && overlap->depth_m > engine_->solver.start_penetration_m) return overlap;
-  return std::nullopt;
 }
+
+bool OdeWorld::fold_state() {
+  bool sane = true;
+  for (dxBody* const body : engine_->links) {
+    const dReal* p = dBodyGetPosition(body);
+    const dReal* q = dBodyGetQuaternion(body);
+    const dReal* v = dBodyGetLinearVel(body);
+    const dReal* w = dBodyGetAngularVel(body);
+    for (int i = 0; i < 3; ++i) {
+      engine_->digest.fold(p[i]);
+      engine_->digest.fold(v[i]);
+      engine_->digest.fold(w[i]);
+      // False for NaN, too.
+      sane = sane && std::abs(p[i]) + std::abs(v[i]) + std::abs(w[i]) < kLargestSane;
+    }
+    for (int i = 0; i < 4; ++i) engine_->digest.fold(q[i]);
+  }
+  return sane;
+}
+
+std::optional<Overlap> OdeWorld::deepest_overlap() { return find_deepest_overlap(*engine_); }
 
 bool OdeWorld::step() {
   std::int64_t complaints = 0;
@@ -167,7 +144,7 @@ bool OdeWorld::step() {
   timer.add_lap_to(engine_->statistics.solve_s);
   dJointGroupEmpty(engine_->contact_group);
   ++engine_->statistics.steps;
-  return fold_state(*engine_);
+  return fold_state();
 }
 
 double OdeWorld::slider_position_m(SliderId id) const {
@@ -228,26 +205,12 @@ void OdeWorld::set_gantry(GantryId id, const Eigen::Vector3d& velocity_m_s, doub
   wake(engine_->gantries[id.index()].parent);
 }
 
-double OdeWorld::mass_kg(BodyId id) const {
-  const std::optional<LinkId> link = engine_->layout.link_of[id.index()];
-  return link ? engine_->masses_kg[link->index()] : 0.0;
+Eigen::Vector3d OdeWorld::link_position(LinkId id) const {
+  return to_vector(dBodyGetPosition(engine_->links[id.index()]));
 }
 
-Eigen::Vector3d OdeWorld::position(BodyId id) const {
-  const BodyInLink& place = engine_->in_link[id.index()];
-  const std::optional<LinkId> link = engine_->layout.link_of[id.index()];
-  if (!link) return place.p_LB;
-  dxBody* const body = engine_->links[link->index()];
-  return to_vector(dBodyGetPosition(body)) + to_matrix(dBodyGetRotation(body)) * place.p_LB;
+Eigen::Matrix3d OdeWorld::link_rotation(LinkId id) const {
+  return to_matrix(dBodyGetRotation(engine_->links[id.index()]));
 }
-
-Eigen::Matrix3d OdeWorld::rotation(BodyId id) const {
-  const BodyInLink& place = engine_->in_link[id.index()];
-  const std::optional<LinkId> link = engine_->layout.link_of[id.index()];
-  if (!link) return place.R_LB;
-  return to_matrix(dBodyGetRotation(engine_->links[link->index()])) * place.R_LB;
-}
-
-const Touch& OdeWorld::touch(BodyId id) const { return engine_->touches[id.index()]; }
 
 }  // namespace parallax::harness

@@ -1,16 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 
-#include "harness/engine/physics_world.h"
+#include "harness/engine/engine_world.h"
 
 namespace parallax::harness {
 
 /// A world that the Open Dynamics Engine steps; user guide, chapters 4 to 7 and 10.
-class OdeWorld final : public PhysicsWorld {
+class OdeWorld final : public EngineWorld {
  public:
   struct Engine;  // ode_engine.h
 
@@ -22,9 +21,6 @@ class OdeWorld final : public PhysicsWorld {
 
   EngineName engine() const override;
   void enter_thread() const override;
-  const WorldLayout& layout() const override;
-  double timestep_s() const override;
-  std::optional<Overlap> reset(std::span<const Placement> placements, std::uint64_t seed) override;
   bool step() override;
   double slider_position_m(SliderId id) const override;
   double slider_rate_m_s(SliderId id) const override;
@@ -35,23 +31,18 @@ class OdeWorld final : public PhysicsWorld {
   Eigen::Vector3d gantry_position_m(GantryId id) const override;
   double gantry_yaw_rad(GantryId id) const override;
   void set_gantry(GantryId id, const Eigen::Vector3d& velocity_m_s, double yaw_rate_rad_s) override;
-  std::optional<Overlap> find_obstacle(const Probe& probe, const BodyMask& ignored,
-                                       double tolerance_m) const override;
-  bool overlaps(const Probe& probe, BodyId id) const override;
-  std::optional<RayHit> cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
-                                 const BodyMask& ignored) const override;
-  std::optional<double> ray_meets(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
-                                  BodyId id) const override;
-  double mass_kg(BodyId id) const override;
-  Eigen::Vector3d position(BodyId id) const override;
-  Eigen::Matrix3d rotation(BodyId id) const override;
-  const Touch& touch(BodyId id) const override;
-  std::uint64_t digest() const override;
-  const StepStatistics& statistics() const override;
-  void measure_times(bool on) override;
 
  private:
-  std::unique_ptr<Engine> engine_;
+  void place(std::span<const Placement> placements, std::uint64_t seed) override;
+  bool fold_state() override;
+  std::optional<Overlap> deepest_overlap() override;
+  std::optional<Met> deepest_met(const Probe& probe, const Sought& sought) const override;
+  std::optional<Met> first_met(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
+                               const Sought& sought) const override;
+  Eigen::Vector3d link_position(LinkId id) const override;
+  Eigen::Matrix3d link_rotation(LinkId id) const override;
+
+  Engine* engine_;  // the state
 };
 
 }  // namespace parallax::harness
