@@ -21,13 +21,6 @@
 namespace parallax::harness {
 namespace {
 
-Eigen::Matrix3d turned_about_z(double angle_rad) {
-  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
-  Eigen::Matrix3d R;
-  R << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
-  return R;
-}
-
 struct PointMass {
   double mass_kg = 0.0;
   Eigen::Vector3d p = Eigen::Vector3d::Zero();    // centre
@@ -113,19 +106,19 @@ class TreeGrower {
  private:
   void add_links() {
     for (const BodySpec& body : layout_.bodies) {
-      tree_.in_link.push_back({body.p_WB, turned_about_z(body.yaw_rad)});
+      tree_.in_link.push_back({body.p_WB, rotation_about_z(body.yaw_rad)});
     }
     for (const Link& link : layout_.links) {
       TreeLink one;
       one.frame = link.members.front();
       const BodySpec& first = layout_.bodies[one.frame];
-      const Eigen::Matrix3d R_LW = turned_about_z(-first.yaw_rad);
+      const Eigen::Matrix3d R_LW = rotation_about_z(-first.yaw_rad);
       std::vector<PointMass> parts;
       for (const BodyId id : link.members) {
         const BodySpec& body = layout_.bodies[id];
         PoseInLink& pose = tree_.in_link[id.index()];
         pose.p_LB = R_LW * (body.p_WB - first.p_WB);
-        pose.R_LB = turned_about_z(body.yaw_rad - first.yaw_rad);
+        pose.R_LB = rotation_about_z(body.yaw_rad - first.yaw_rad);
         PointMass part = mass_of(body);
         part.p = pose.p_LB + pose.R_LB * part.p;
         part.I_C = pose.R_LB * part.I_C * pose.R_LB.transpose();
@@ -198,6 +191,13 @@ class TreeGrower {
 };
 
 }  // namespace
+
+Eigen::Matrix3d rotation_about_z(double angle_rad) {
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  Eigen::Matrix3d R;
+  R << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
+  return R;
+}
 
 std::variant<LinkTree, TreeProblem> grow_tree(const WorldLayout& layout) {
   return TreeGrower(layout).grow();

@@ -29,6 +29,8 @@ struct TreeLink {
   bool gravity = false;
 };
 
+Eigen::Matrix3d rotation_about_z(double angle_rad);
+
 /// Pose of body B in its link L (in the world for a static body).
 struct PoseInLink {
   Eigen::Vector3d p_LB = Eigen::Vector3d::Zero();

@@ -1,7 +1,6 @@
 #include <ode/ode.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "harness/engine/ode_engine.h"
 #include "harness/engine/ode_rest.h"
@@ -9,13 +8,6 @@
 
 namespace parallax::harness {
 namespace {
-
-Eigen::Matrix3d rotation_z(double angle_rad) {
-  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
-  Eigen::Matrix3d R;
-  R << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
-  return R;
-}
 
 double total_volume_m3(const BodySpec& body) {
   double sum = 0.0;
@@ -145,11 +137,12 @@ void OdeBuilder::create_links() {
     double mass_kg = 0.0;
     for (const BodyId id : link.members) {
       const BodySpec& body = layout.bodies[id];
-      weighted += body.mass_kg * (body.p_WB + rotation_z(body.yaw_rad) * centre_of_mass_B(body));
+      weighted +=
+          body.mass_kg * (body.p_WB + rotation_about_z(body.yaw_rad) * centre_of_mass_B(body));
       mass_kg += body.mass_kg;
     }
     const Eigen::Vector3d p_WL = weighted / mass_kg;
-    const Eigen::Matrix3d R_LW = rotation_z(-first.yaw_rad);
+    const Eigen::Matrix3d R_LW = rotation_about_z(-first.yaw_rad);
     dMass mass;
     dMassSetZero(&mass);
     bool gravity = false;
@@ -157,7 +150,7 @@ void OdeBuilder::create_links() {
       const BodySpec& body = layout.bodies[id];
       PoseInLink& place = engine_.in_link[id.index()];
       place.p_LB = R_LW * (body.p_WB - p_WL);
-      place.R_LB = rotation_z(body.yaw_rad - first.yaw_rad);
+      place.R_LB = rotation_about_z(body.yaw_rad - first.yaw_rad);
       const dMass part = mass_in_link(body, place);
       dMassAdd(&mass, &part);
       gravity = gravity || body.gravity;
@@ -190,7 +183,7 @@ void OdeBuilder::create_geoms() {
     const BodyId id = engine_.layout.bodies.id_at(i);
     const BodySpec& body = engine_.layout.bodies[id];
     if (!engine_.layout.link_of[i]) {
-      engine_.in_link[i] = PoseInLink{body.p_WB, rotation_z(body.yaw_rad)};
+      engine_.in_link[i] = PoseInLink{body.p_WB, rotation_about_z(body.yaw_rad)};
     }
     if (!body.collides) continue;
     for (const BodyShape& shape : body.shapes) {
@@ -314,7 +307,7 @@ void OdeBuilder::create_gantries() {
     if (!spec.parent.empty()) {
       gantry.parent_id = *engine_.layout.find_body(spec.parent);
       const BodySpec& parent = engine_.layout.bodies[gantry.parent_id];
-      R_PW = rotation_z(-parent.yaw_rad);
+      R_PW = rotation_about_z(-parent.yaw_rad);
       p_WP = parent.p_WB;
       gantry.start_yaw_rad -= parent.yaw_rad;
     }
