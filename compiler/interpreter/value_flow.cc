@@ -162,6 +162,32 @@ void ValueFlow::note_captured(std::uint32_t unit, std::uint32_t level, std::uint
   captured_[unit].insert(index);
 }
 
+/// Units that only call each other are left out: who would call them is not known.
+void ValueFlow::find_reached() {
+  const auto count = static_cast<std::uint32_t>(code_.units.size());
+  std::vector<std::vector<std::uint32_t>> leads_to(count);
+  std::vector<std::uint32_t> open = {code_.main, code_.definitions};
+  for (std::uint32_t unit = 0; unit < count; ++unit) {
+    for (const auto& site : callers_[unit]) leads_to[site.unit].push_back(unit);
+    if (!callers_[unit].empty() && !unknown_callers_[unit] && !performed_[unit]) continue;
+    // Handlers, branches and function values run where the unit around them does.
+    const auto around = code_.units[unit].around;
+    if (around) {
+      leads_to[*around].push_back(unit);
+    } else {
+      open.push_back(unit);
+    }
+  }
+  reached_.assign(count, false);
+  while (!open.empty()) {
+    const auto unit = open.back();
+    open.pop_back();
+    if (reached_[unit]) continue;
+    reached_[unit] = true;
+    open.insert(open.end(), leads_to[unit].begin(), leads_to[unit].end());
+  }
+}
+
 const PlanInstruction& ValueFlow::at(const ValuePlace& place) const {
   return code_.units[place.unit].code[place.pc];
 }
@@ -336,7 +362,10 @@ bool ValueFlow::shared(const ValuePlace& place) {
 
 bool ValueFlow::returns(const ValuePlace& place, std::vector<std::uint32_t>& returned) {
   const auto unit = place.unit;
-  const bool known = !callers_[unit].empty() || performed_[unit];
+  if (reached_.empty()) find_reached();
+  const bool called = std::any_of(callers_[unit].begin(), callers_[unit].end(),
+                                  [&](const CallSite& site) { return reached_[site.unit]; });
+  const bool known = called || performed_[unit];
   if (unknown_callers_[unit] || !known) return true;
   returned.push_back(unit);
   for (const auto& site : callers_[unit]) open_result(site);

@@ -50,6 +50,7 @@ class ValueFlow {
   void find_heights(std::uint32_t unit);
   void note_links(std::uint32_t unit);
   void note_captured(std::uint32_t unit, std::uint32_t level, std::uint32_t index);
+  void find_reached();
   const PlanInstruction& at(const ValuePlace& place) const;
   void open(std::uint32_t unit, std::uint32_t pc, std::uint32_t slot);
   void open_exit(std::uint32_t exit, std::uint32_t slot);
@@ -74,6 +75,7 @@ class ValueFlow {
   std::vector<CallSite> performs_;
   std::vector<bool> unknown_callers_;
   std::vector<bool> performed_;
+  std::vector<bool> reached_;  // units that may run, once a question needs them
   std::vector<bool> keeping_;  // built-ins whose result holds their arguments and nothing else
 
   std::set<Key> visited_;

@@ -92,6 +92,7 @@ TEST_CASE("idle designators: what is dropped is reported where it stands") {
       {"(defun step () (return-from step OPEN))(step)(perform SIG)", {kOpen}},
       {"(flet ((step () OPEN)) (step) (perform SIG))", {kOpen}},
       {"(defun main (n) (when (> n 0) (main (- n 1))) OPEN)(main 2)", {kOpen}},
+      {"(defun f (n) (if (> n 0) (g (- n 1)) OPEN))(defun g (n) (f n))(g 2)(perform SIG)", {kOpen}},
       {"(defmacro step () `OPEN)(step)(perform SIG)", {kOpen}},
       {"(defun unused () SIG (perform OPEN))(perform OPEN)", {kSig}},
   };
@@ -146,6 +147,10 @@ TEST_CASE("idle designators: what may be used is not reported") {
       "(defun f () OPEN)(f)(dolist (g '(f)) (perform (funcall g)))",
       "(defun f (&key a b) (list a b) OPEN)(perform (f :b 1 :a 2))",
       "(defun make () OPEN)(perform SIG)",
+      // Nothing calls these functions but themselves.
+      "(defun f (n) (if (> n 0) (f (- n 1)) OPEN))(perform SIG)",
+      "(defun f (n) (if (> n 0) (g (- n 1)) OPEN))(defun g (n) (f n))(perform SIG)",
+      "(defun f (n) (if (> n 0) (funcall (lambda () (f (- n 1)))) OPEN))(perform SIG)",
       "(flet ((f () OPEN)) (perform (f)))",
       "(perform (funcall (lambda () OPEN)))",
       "(let ((f (lambda () OPEN))) (perform (funcall f)))",
