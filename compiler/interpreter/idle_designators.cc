@@ -96,7 +96,7 @@ std::optional<DesignatorKind> performable(const LispData& data, const PlanInstru
 }
 
 /// The designator as written, or its beginning.
-std::string short_text(const LispData& data, DatumId form) {
+std::string short_text(const LispData& data, DatumId form, DesignatorKind kind) {
   constexpr std::size_t kLongest = 60;
   auto whole = print_datum(data, form);
   if (whole.size() <= kLongest) return whole;
@@ -104,7 +104,8 @@ std::string short_text(const LispData& data, DatumId form) {
   for (const auto part : data.children(form).first(std::min<std::size_t>(3, data[form].count))) {
     out += (out.empty() ? "" : " ") + print_datum(data, part);
   }
-  return out.size() <= kLongest ? fmt::format("({} ...)", out) : "(an action ...)";
+  if (out.size() <= kLongest) return fmt::format("({} ...)", out);
+  return kind == DesignatorKind::kMotion ? "(a motion ...)" : "(an action ...)";
 }
 
 }  // namespace
@@ -150,7 +151,7 @@ void warn_of_idle_designators(const LispText& text, const PlanCode& code,
                   fmt::format("`{}` returns it, and no call uses what it returns", unit.name));
     }
     note_macro_calls(report, text.data, form);
-    report.fix(fmt::format("write `(perform {})`", short_text(text.data, form)));
+    report.fix(fmt::format("write `(perform {})`", short_text(text.data, form, found.kind)));
   }
 }
 

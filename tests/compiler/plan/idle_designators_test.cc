@@ -231,6 +231,13 @@ TEST_CASE("idle designators: the report says what to write, and where the value 
   REQUIRE(entry.notes.size() == 1);
   CHECK(entry.notes[0].text == "`step` returns it, and no call uses what it returns");
 
+  const std::string long_name = "*p" + std::string(60, '1') + "*";
+  const auto shortened =
+      unroll("(defparameter " + long_name + " " + pose_at(0.5) + ")\n(a motion (target " +
+             long_name + ") (type going))\n(perform " + kSig + ")");
+  REQUIRE(shortened.sink.sorted().size() == 1);
+  CHECK(shortened.sink.sorted().front().fix == "write `(perform (a motion ...))`");
+
   const auto macro = unroll(written("(defmacro m () `OPEN)\n(m)\n(perform SIG)"));
   REQUIRE(macro.sink.sorted().size() == 1);
   REQUIRE(macro.sink.sorted()[0].notes.size() == 1);
