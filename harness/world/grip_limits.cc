@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 
+#include "harness/world/arguments.h"
 #include "harness/world/shapes.h"
 #include "harness/world/world_layout.h"
 
@@ -60,6 +61,21 @@ std::optional<Grip> grip_of(const WorldSpec& spec, const BodySpec& body) {
   const bool fits = std::any_of(spec.mobile->arms.begin(), spec.mobile->arms.end(),
                                 [&](const ArmSpec& arm) { return grasp.width_m < arm.opening_m; });
   return fits ? std::optional(Grip{grasp.p_BG, grasp.width_m, grasp.effort_n}) : std::nullopt;
+}
+
+/// The force of an action that squeezes a load, as it gives it or as its controller has it; none if
+/// that is the force of the body's own grip.
+std::optional<double> action_squeeze_n(std::string_view controller, const State& arguments) {
+  if (controller != "pick-up" && controller != "picking-up" && controller != "regrip") {
+    return std::nullopt;
+  }
+  const std::string_view name = controller == "picking-up" ? "grip_force_n" : "effort_n";
+  const auto given = arguments.find(std::string(name));
+  if (given != arguments.end()) return as_number(given->second);
+  const auto* spec = find_controller(controller);
+  const auto* force = spec == nullptr ? nullptr : find_argument(*spec, name);
+  if (force == nullptr || std::isnan(force->fallback)) return std::nullopt;
+  return force->fallback;
 }
 
 /// From the point to the box round the shape [m].
@@ -116,14 +132,35 @@ std::string_view to_string(GrippedForm form) {
   return "other";
 }
 
+void widen_by_action(const WorldSpec& spec, std::string_view controller, const State& arguments,
+                     std::map<std::string, GripRange>& ranges) {
+  const auto squeeze_n = action_squeeze_n(controller, arguments);
+  if (!squeeze_n) return;
+  const auto object = arguments.find("object");
+  const auto* name =
+      object == arguments.end() ? nullptr : std::get_if<std::string>(&object->second);
+  const bool names_body =
+      name != nullptr && std::any_of(spec.bodies.begin(), spec.bodies.end(),
+                                     [&](const BodySpec& body) { return body.name == *name; });
+  for (const auto& body : spec.bodies) {
+    if (names_body && body.name != *name) continue;
+    const auto grip = grip_of(spec, body);
+    if (!grip) continue;
+    auto& range = ranges[body.name];
+    range.gentlest_n = std::min(range.gentlest_n.value_or(grip->squeeze_n), *squeeze_n);
+    range.firmest_n = std::max(range.firmest_n.value_or(grip->squeeze_n), *squeeze_n);
+  }
+}
+
 std::vector<DoubtfulGrip> doubtful_grips(const WorldSpec& spec,
                                          const std::map<std::string, GripRange>& ranges) {
   std::vector<DoubtfulGrip> out;
-  if (grippers(spec).empty()) return out;
+  if (grippers(spec).empty() || spec.solver.gravity_m_s2 == 0.0) return out;
   const auto layout = lay_out(spec);
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
     const auto& body = layout.bodies[layout.bodies.id_at(i)];
-    const auto grip = layout.is_free[i] ? grip_of(spec, body) : std::nullopt;
+    const bool is_load = layout.is_free[i] && body.gravity;
+    const auto grip = is_load ? grip_of(spec, body) : std::nullopt;
     if (!grip) continue;
     const auto form = gripped_form(body, *grip);
     const auto* cell = slip_cell(spec.engine, form, spec.solver.timestep_s);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/simulator/simulator.h"
 #include "harness/world/world_spec.h"
 
 namespace parallax::harness {
@@ -35,11 +36,17 @@ struct GripRange {
   std::optional<double> gentlest_n, firmest_n;
 };
 
+/// Widens the ranges by the squeeze that an action gives: of the body that its `object` names,
+/// else, as where that stands for an argument of the event, of every body that the robot can grip.
+/// Forces for handles are left out.
+void widen_by_action(const WorldSpec& spec, std::string_view controller, const State& arguments,
+                     std::map<std::string, GripRange>& ranges);
+
 /// The bodies of a world that its robot can grip and that may slip because of engine and step, by
 /// name. The limits are those of the table in docs/physics.md ("Grips"), which grip_limits_test
 /// holds against this. Left out are grips that at rest always hold five times what they have to,
-/// where none of those slipped, and grips that by Coulomb's law hold nothing. `ranges`: by body.
-/// `spec` must pass check_world.
+/// where none of those slipped, grips that by Coulomb's law hold nothing, and loads without weight.
+/// `ranges`: by body. `spec` must pass check_world.
 std::vector<DoubtfulGrip> doubtful_grips(const WorldSpec& spec,
                                          const std::map<std::string, GripRange>& ranges = {});
 

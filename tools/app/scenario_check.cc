@@ -17,7 +17,6 @@
 #include "harness/campaign/start_check.h"
 #include "harness/discrete/model_simulator.h"
 #include "harness/robot/ode_simulator.h"
-#include "harness/world/arguments.h"
 #include "harness/world/grip_limits.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/caused_fluents.h"
@@ -218,15 +217,9 @@ void warn_of_grips(const harness::Scenario& scenario, base::DiagnosticSink& sink
       range.lightest_kg = interval.lower;
       range.heaviest_kg = interval.upper;
     }
-    if (body.grasp) range.gentlest_n = range.firmest_n = body.grasp->effort_n;
-    for (const auto& action : scenario.actions) {
-      const auto given = action.arguments.find("effort_n");
-      const auto effort =
-          given == action.arguments.end() ? std::nullopt : harness::as_number(given->second);
-      if (!effort || !body.grasp) continue;
-      range.gentlest_n = std::min(*range.gentlest_n, *effort);
-      range.firmest_n = std::max(*range.firmest_n, *effort);
-    }
+  }
+  for (const auto& action : scenario.actions) {
+    harness::widen_by_action(world, action.controller, action.arguments, ranges);
   }
   constexpr double kMs = 1000.0;
   for (const auto& grip : harness::doubtful_grips(world, ranges)) {

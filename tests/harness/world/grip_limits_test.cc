@@ -7,10 +7,13 @@
 
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <numbers>
 #include <regex>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "tests/harness/world/fetch_world.h"
 
@@ -121,6 +124,67 @@ TEST_CASE("a drawn mass and a given squeeze widen what a grip holds") {
   CHECK(at(2.0, {mass_kg(8.0), mass_kg(6.0), {}, {}}) == 0);
   CHECK(at(6.0, {{}, {}, 0.5 * kSqueeze_n, kSqueeze_n}) == 1);
   CHECK(at(0.9, {{}, {}, kSqueeze_n, 2.0 * kSqueeze_n}) == 1);
+}
+
+/// A mobile robot beside two loads that its grasps squeeze with kSqueeze_n.
+WorldSpec mobile_world() {
+  auto spec = world_with("ring", EngineKind::kOde, 0.004, 6.0);
+  spec.mobile.emplace();
+  ArmSpec arm;
+  arm.near_pad_body = "near_pad";
+  arm.far_pad_body = "far_pad";
+  spec.mobile->arms = {arm};
+  spec.robot = {};
+  auto& grasp = load_in(spec).grasp.emplace();
+  grasp.width_m = 0.07;
+  grasp.effort_n = kSqueeze_n;
+  auto second = load_in(spec);
+  second.name = "second";
+  spec.bodies.push_back(second);
+  return spec;
+}
+
+/// The squeezes of a body after an action; both are those of its grip if the action says nothing.
+std::pair<double, double> squeezes(const WorldSpec& spec, std::string_view controller,
+                                   const State& arguments, const std::string& body = "box") {
+  std::map<std::string, GripRange> ranges;
+  widen_by_action(spec, controller, arguments, ranges);
+  const auto& range = ranges[body];
+  return {range.gentlest_n.value_or(kSqueeze_n), range.firmest_n.value_or(kSqueeze_n)};
+}
+
+TEST_CASE("an action widens the squeeze of what it grips, not of handles") {
+  using Range = std::pair<double, double>;
+  const auto mobile = mobile_world();
+  const Range own{kSqueeze_n, kSqueeze_n};
+  for (const auto* controller : {"open-drawer", "open-door", "close-door"}) {
+    CAPTURE(controller);
+    CHECK(squeezes(mobile, controller, {{"effort_n", 90.0}}) == own);
+    CHECK(squeezes(mobile, controller, {}) == own);
+  }
+  CHECK(squeezes(mobile, "pick-up", {}) == own);
+  CHECK(squeezes(mobile, "pick-up", {{"effort_n", 8.0}}) == Range{8.0, kSqueeze_n});
+  CHECK(squeezes(mobile, "regrip", {{"effort_n", 30.0}}) == Range{kSqueeze_n, 30.0});
+  // The table of controllers has its force.
+  CHECK(squeezes(mobile, "regrip", {}) == Range{kSqueeze_n, 40.0});
+
+  const State named{{"effort_n", 8.0}, {"object", std::string("box")}};
+  CHECK(squeezes(mobile, "pick-up", named) == Range{8.0, kSqueeze_n});
+  CHECK(squeezes(mobile, "pick-up", named, "second") == own);
+  const State open{{"effort_n", 8.0}, {"object", std::string("{item}")}};
+  CHECK(squeezes(mobile, "pick-up", open, "second") == Range{8.0, kSqueeze_n});
+
+  const auto line = world_with("ring", EngineKind::kOde, 0.004, 6.0);
+  CHECK(squeezes(line, "picking-up", {}) == own);
+  CHECK(squeezes(line, "picking-up", {{"grip_force_n", 8.0}}) == Range{8.0, kSqueeze_n});
+}
+
+TEST_CASE("loads without weight do not slip") {
+  auto spec = world_with("cylinder", EngineKind::kMujoco, 0.004, 2.0);
+  REQUIRE(doubtful_grips(spec).size() == 1);
+  SUBCASE("none has any") { spec.solver.gravity_m_s2 = 0.0; }
+  SUBCASE("this one has none") { load_in(spec).gravity = false; }
+  CHECK(doubtful_grips(spec).empty());
 }
 
 TEST_CASE("what the pads do not close on is no part of a grip") {
