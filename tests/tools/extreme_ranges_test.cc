@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -271,6 +272,21 @@ const std::vector<Words> kAboutPhysics = {
     {"export", "edge", "-o", "moved.csv"},
 };
 
+/// Calls that are refused whatever the model says, with their exit codes. The scenarios with a
+/// physical world give `export` and `draw` their work; `prove` would need a mobile robot.
+const std::map<std::string, int> kRefused = {
+    {"export out -o out.csv ", 2},                // nothing moves where the world is a model
+    {"draw two/sticks.yaml --out pictures ", 2},  // there is no `world` to draw
+    {"prove two/sticks.yaml ", 3},                // nothing of it is known as geometry
+};
+
+/// Answered, yes or no or undecided; or refused as listed.
+bool is_expected(const Words& words, int code) {
+  const auto refused = kRefused.find(joined(words));
+  if (refused != kRefused.end()) return code == refused->second;
+  return code == 0 || code == 1 || code == 4;
+}
+
 /// Two scenarios whose models have such a range, the first one in two revisions.
 class Scenarios : public TwoModels {
  public:
@@ -303,7 +319,8 @@ TEST_CASE("a scenario whose model has such ranges gives every command the same a
     for (std::size_t i = 0; i < all.size(); ++i) {
       CAPTURE(range[0]);
       CAPTURE(joined(all[i]));
-      CHECK(wanted[i] < 128);
+      CAPTURE(wanted[i]);
+      CHECK(is_expected(all[i], wanted[i]));
       const auto result = bounded(scenarios, all[i]);
       CHECK_MESSAGE(result.code == wanted[i], result.err);
     }
