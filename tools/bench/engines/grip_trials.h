@@ -23,8 +23,8 @@ struct GripCell {
   double margin = 2.0;
   double timestep_s = 0.002;
   harness::EngineKind engine = harness::EngineKind::kOde;
-  bool straight =
-      false;  // the sides of the load are along the pads; else it is up to 0.05 rad askew
+  /// The sides of the load are along the pads; else it is up to 0.05 rad askew.
+  bool straight = false;
 };
 
 struct GripTrial {
