@@ -7,11 +7,10 @@
 #include <cstdlib>
 #include <limits>
 #include <sdf/sdf.hh>
-#include <set>
 #include <string_view>
 
 #include "harness/import/description.h"
-#include "harness/import/plain_path.h"
+#include "harness/import/sdf_includes.h"
 #include "harness/import/sdf_module.h"
 #include "harness/import/xml_census.h"
 
@@ -21,7 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 namespace math = ignition::math;
 
-constexpr std::size_t kMaxIncluded = 500;
 constexpr double kDefaultFriction = 1.0;  // of the format
 
 Eigen::Vector3d vector_of(const math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
@@ -50,132 +48,6 @@ class QuietLibrary {
 
  private:
   std::string home_;
-};
-
-std::string trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first == text.npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1));
-}
-
-/// Looks at every file that the library would open, before it does: those that `<include>` names,
-/// and what these name in turn.
-class IncludeGate {
- public:
-  explicit IncludeGate(const std::vector<fs::path>& folders) : folders_(folders) {}
-
-  std::optional<TextFault> check(const XmlOutline& outline) {
-    std::vector<std::string> around;
-    return check(outline, around);
-  }
-  std::vector<std::string> files() const { return {files_.begin(), files_.end()}; }
-  std::vector<std::string> absent() const { return {absent_.begin(), absent_.end()}; }
-  /// The descriptions that are included, each with where the file itself begins to include it.
-  const std::map<std::string, std::size_t>& texts() const { return texts_; }
-
- private:
-  std::optional<TextFault> check(const XmlOutline& outline, std::vector<std::string>& around) {
-    elements_ += outline.elements.size();
-    parts_ += static_cast<std::size_t>(
-        std::count_if(outline.elements.begin(), outline.elements.end(), &is_part));
-    if (elements_ > kMaxImportElements || parts_ > kMaxImportParts) {
-      return TextFault{0, fmt::format("what is included comes to more than {} elements, or to more "
-                                      "than {} models, links, joints and frames",
-                                      kMaxImportElements, kMaxImportParts)};
-    }
-    for (const XmlElement& element : outline.elements) {
-      if (element.tag != "uri" || !element.parent) continue;
-      if (outline.elements[*element.parent].tag != "include") continue;
-      if (around.empty()) here_ = element.offset;
-      if (auto message = follow(trimmed(element.text), around)) {
-        return TextFault{element.offset, *std::move(message)};
-      }
-    }
-    return std::nullopt;
-  }
-
-  std::optional<std::string> follow(const std::string& uri, std::vector<std::string>& around) {
-    constexpr std::string_view kScheme = "model://";
-    const auto shown = uri.substr(0, 120);
-    if (!uri.starts_with(kScheme) || !is_plain_path(uri.substr(kScheme.size()))) {
-      return fmt::format("`{}` is not included: only `model://NAME` is, without `..`", shown);
-    }
-    const std::string name = uri.substr(kScheme.size());
-    for (const fs::path& folder : folders_) {
-      const fs::path there = folder / name;
-      if (!exists(there)) continue;
-      std::error_code error;
-      if (leads_through_link(folder, there)) return fmt::format("`{}` leads through a link", shown);
-      return fs::is_directory(there, error) ? check_folder(there, shown, around)
-                                            : check_file(there, shown, around);
-    }
-    return fmt::format("`{}` is in none of the folders under `models`", shown);
-  }
-
-  std::optional<std::string> check_folder(const fs::path& folder, const std::string& uri,
-                                          std::vector<std::string>& around) {
-    for (const char* const name : {"model.config", "manifest.xml"}) {
-      const fs::path manifest = folder / name;
-      if (!exists(manifest)) continue;
-      std::string text;
-      if (auto message = read(manifest, text)) return message;
-      const XmlOutline outline = outline_of(text);
-      if (outline.fault) return fmt::format("{} of `{}`: {}", name, uri, outline.fault->message);
-      bool any = false;
-      for (const XmlElement& element : outline.elements) {
-        if (element.tag != "sdf") continue;
-        const std::string file = trimmed(element.text);
-        if (!is_plain_path(file) || file.find('/') != file.npos) {
-          return fmt::format("{} of `{}` names no file of its folder", name, uri);
-        }
-        any = true;
-        if (auto message = check_file(folder / file, uri, around)) return message;
-      }
-      if (!any) return fmt::format("{} of `{}` names no SDF file", name, uri);
-      return std::nullopt;
-    }
-    return fmt::format("`{}` has no model.config", uri);
-  }
-
-  std::optional<std::string> check_file(const fs::path& path, const std::string& uri,
-                                        std::vector<std::string>& around) {
-    const std::string key = path.lexically_normal().string();
-    if (std::find(around.begin(), around.end(), key) != around.end()) {
-      return fmt::format("`{}` includes itself", uri);
-    }
-    if (++followed_ > kMaxIncluded) {
-      return fmt::format("more than {} models are included", kMaxIncluded);
-    }
-    std::string text;
-    if (auto message = read(path, text)) return message;
-    const XmlOutline outline = outline_of(text);
-    if (outline.fault) return fmt::format("`{}`: {}", uri, outline.fault->message);
-    texts_.emplace(text, here_);
-    around.push_back(key);
-    const auto fault = check(outline, around);
-    around.pop_back();
-    if (fault) return fmt::format("in `{}`: {}", uri, fault->message);
-    return std::nullopt;
-  }
-
-  bool exists(const fs::path& path) {
-    std::error_code error;
-    if (fs::exists(fs::symlink_status(path, error))) return true;
-    absent_.insert(path.lexically_normal().string());
-    return false;
-  }
-
-  std::optional<std::string> read(const fs::path& path, std::string& text) {
-    if (auto message = read_bounded(path, kMaxImportBytes, text)) return message;
-    files_.insert(path.string());
-    return std::nullopt;
-  }
-
-  const std::vector<fs::path>& folders_;
-  std::set<std::string> files_, absent_;
-  std::map<std::string, std::size_t> texts_;
-  std::size_t here_ = 0;                                 // the outermost include
-  std::size_t followed_ = 0, elements_ = 0, parts_ = 0;  // of all files together
 };
 
 constexpr std::string_view kPoseKeys = "relative_to frame degrees rotation_format";
