@@ -245,14 +245,14 @@ TEST_CASE("event and outcome are known by the fields of the cause, whatever its 
 TEST_CASE("a step of an executed plan is known by how the model does not have it") {
   const auto step = [](const std::string& differs, const std::string& outcome,
                        const std::string& status) {
-    return shown_of(
-        R"x({"trace":1,"first":[{"fluent":"F()","observed":true}],)x"
-        R"x("cause":{"text":"z","event":"Detect(cup)"},)x"
-        R"x("path":[{"event":"Go(r2)","outcome":"failed","condition":"c"},)x"
-        R"x({"event":"Detect(cup)",)x" +
-            outcome + R"x(}],"outcomes":[{"status":"failed","reason":"path: blocked"},{)x" +
-            status + R"x(}],"differs":{"event":1,)x" + differs + "}}",
-        R"x(,"execution":"closed-loop")x");
+    return shown_of(R"x({"trace":1,"first":[{"fluent":"F()","observed":true}],)x"
+                    R"x("cause":{"text":"z","event":"Detect(cup)"},)x"
+                    R"x("path":[{"event":"Go(r2)","outcome":"failed","condition":"c"},)x"
+                    R"x({"event":"Detect(cup)",)x" +
+                        outcome +
+                        R"x(}],"outcomes":[{"status":"failed","reason":"path: blocked"},{)x" +
+                        status + R"x(}],"differs":{"event":1,)x" + differs + "}}",
+                    R"x(,"execution":"closed-loop")x");
   };
   const std::string ok = R"x("status":"ok")x", found = R"x("outcome":"ok","object":"cup1")x";
   const auto impossible = step(R"x("impossible":true)x", found, ok);
