@@ -27,11 +27,11 @@ namespace {
 /// Calls visit(event term) for every occurrence of Happens in the formula that is not negative.
 template <typename Visit>
 void for_each_positive_event(const TypedModel& model, TypedFormulaId root, const Visit& visit) {
-  struct Part {
+  struct SignedPart {
     TypedFormulaId id;
     bool positive, negative;
   };
-  std::vector<Part> todo = {{root, true, false}};
+  std::vector<SignedPart> todo = {{root, true, false}};
   while (!todo.empty()) {
     const auto part = todo.back();
     todo.pop_back();
@@ -41,7 +41,7 @@ void for_each_positive_event(const TypedModel& model, TypedFormulaId root, const
       continue;
     }
     for (std::size_t i = 0; i < formula.children.size(); ++i) {
-      Part child{formula.children[i], part.positive, part.negative};
+      SignedPart child{formula.children[i], part.positive, part.negative};
       const bool flips =
           formula.kind == FormulaKind::kNot || (formula.kind == FormulaKind::kImplies && i == 0);
       if (flips) std::swap(child.positive, child.negative);
