@@ -95,6 +95,9 @@ std::string event_key(const Trace& trace);
 std::string to_text(const Trace& trace);
 /// One JSON object on one line, fields as documented for `parallax traces --format jsonl`.
 std::string to_jsonl(const Trace& trace);
+/// The same without `released` and `predicates`: nothing is said of atoms that HoldsAt and Happens
+/// may leave open.
+std::string observable_jsonl(const Trace& trace);
 
 /// The ground atoms of one declared symbol, in declaration order.
 struct SymbolInstances {

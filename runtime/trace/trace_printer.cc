@@ -66,6 +66,8 @@ class TextFormat final : public TraceFormat {
 
 class JsonlFormat final : public TraceFormat {
  public:
+  /// `tells_all`: also ReleasedAt and user predicates.
+  explicit JsonlFormat(bool tells_all) : tells_all_(tells_all) {}
   std::string head(const std::string& number, const std::string& orbit) const override {
     return "{\"trace\":" + number + (orbit.empty() ? "" : ",\"orbit\":" + orbit) +
            ",\"timepoints\":[";
@@ -77,15 +79,23 @@ class JsonlFormat final : public TraceFormat {
                     const TracePoint& point) const override {
     return ",\"happens\":" + json_list(sorted_names(symbols, point.happens)) +
            ",\"holds\":" + json_list(sorted_names(symbols, point.holds)) +
-           ",\"released\":" + json_list(sorted_names(symbols, point.released)) +
+           (tells_all_ ? ",\"released\":" + json_list(sorted_names(symbols, point.released)) : "") +
            (point.returned ? ",\"returned\":" + base::json_text(nlohmann::json(*point.returned))
                            : "") +
            '}';
   }
   std::string tail(const std::vector<std::string>& predicates) const override {
-    return "],\"predicates\":" + json_list(predicates) + "}\n";
+    return (tells_all_ ? "],\"predicates\":" + json_list(predicates) : "]") + "}\n";
   }
+
+ private:
+  bool tells_all_;
 };
+
+std::string without_end(std::string line) {
+  line.pop_back();
+  return line;
+}
 
 }  // namespace
 
@@ -95,7 +105,7 @@ const TraceFormat& text_format() {
 }
 
 const TraceFormat& jsonl_format() {
-  static const JsonlFormat format;
+  static const JsonlFormat format(true);
   return format;
 }
 
@@ -120,9 +130,12 @@ std::string format_trace(const TraceFormat& format, const Trace& trace, const st
 std::string to_text(const Trace& trace) { return format_trace(text_format(), trace); }
 
 std::string to_jsonl(const Trace& trace) {
-  auto line = format_trace(jsonl_format(), trace);
-  line.pop_back();
-  return line;
+  return without_end(format_trace(jsonl_format(), trace));
+}
+
+std::string observable_jsonl(const Trace& trace) {
+  static const JsonlFormat kFormat(false);
+  return without_end(format_trace(kFormat, trace));
 }
 
 }  // namespace parallax::runtime

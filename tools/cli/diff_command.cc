@@ -229,10 +229,14 @@ std::string side_text(const char* what, const TraceSet& set, const TraceSet& oth
   return out + to_text(*side.witness);
 }
 
-Json side_json(const TraceSetSide& side) {
+/// `set` is the one that has the traces.
+Json side_json(const TraceSetSide& side, const TraceSet& set) {
   Json out = {{"count", side.count}, {"witness", nullptr}};
   if (!side.witness) return out;
-  out["witness"] = base::parse_ordered_json(to_jsonl(*side.witness));
+  out["witness"] = base::parse_ordered_json(observable_jsonl(*side.witness));
+  if (!set.tells_last_events && side.witness->points.back().happens.empty()) {
+    out["witness"]["timepoints"].back().erase("happens");
+  }
   out["witness"]["leaves_at"] = side.leaves_at;
   return out;
 }
@@ -248,8 +252,8 @@ int diff_trace_files(const DiffOptions& options, Invocation& invocation) {
   const Json document = {
       {"old", {{"count", before->traces.size()}, {"complete", before->complete}}},
       {"new", {{"count", after->traces.size()}, {"complete", after->complete}}},
-      {"lost", side_json(lost)},
-      {"gained", side_json(gained)}};
+      {"lost", side_json(lost, *before)},
+      {"gained", side_json(gained, *after)}};
   out.fields = "\"traces\":" + base::json_text(document);
   for (const auto* set : {&*before, &*after}) {
     out.text +=

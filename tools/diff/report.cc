@@ -206,7 +206,7 @@ OrderedJson json_of(const std::optional<runtime::TraceNumber>& number) {
 
 OrderedJson witness_json(const SideView& side, bool lost) {
   const auto& witness = *side.traces.witness;
-  OrderedJson out = base::parse_ordered_json(to_jsonl(witness.trace));
+  OrderedJson out = base::parse_ordered_json(observable_jsonl(witness.trace));
   out.erase("trace");
   out["excluded_by"] = witness.excluded_by;
   out["events"] = witness.events;

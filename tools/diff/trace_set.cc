@@ -118,6 +118,7 @@ base::Result<TraceSet> load_trace_set(const std::string& path, Context& context)
     const auto claimed = runtime::read_trace(place, number, context.files(), reader);
     if (!claimed) return sink.already_reported();
     out.traces.push_back(trace_of(*claimed, number, symbols));
+    out.tells_last_events = out.tells_last_events && claimed->points.back().happens.closed;
   }
   std::set<std::vector<Step>> seen;
   std::erase_if(out.traces,

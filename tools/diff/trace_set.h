@@ -15,6 +15,7 @@ struct TraceSet {
   std::vector<runtime::Trace> traces;  // in the order of the file
   bool closed = false;                 // the file says how the list ended
   bool complete = false;               // and that these are all traces
+  bool tells_last_events = true;       // also the events of the last timepoints, perhaps none
 };
 
 /// Reads lines of `parallax traces --format jsonl`, or ITF, as `traces --replay` does (E6101,

@@ -88,7 +88,7 @@ MutantJudge::Told MutantJudge::compare_models(const CaseModel& original, const C
     out.judgement.gained = side == &found.gained;
     out.judgement.excluded_by = side->witness->excluded_by;
     out.judgement.trace = beginning_text(*side->witness);
-    out.judgement.trace_json = to_jsonl(side->witness->trace);
+    out.judgement.trace_json = observable_jsonl(side->witness->trace);
     return out;
   }
   const bool decided =

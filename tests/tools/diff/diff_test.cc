@@ -293,6 +293,57 @@ TEST_CASE_FIXTURE(DiffFixture, "trace files are sets") {
   CHECK(result.out.find("leaves all of b.jsonl at timepoint 1") != std::string::npos);
 }
 
+void check_tells_nothing_else(const Json& witness) {
+  CHECK_FALSE(witness.contains("predicates"));
+  CHECK_FALSE(witness.contains("undetermined"));
+  REQUIRE(witness["timepoints"].size() > 1);
+  for (const auto& point : witness["timepoints"]) {
+    CHECK(point.contains("holds"));
+    CHECK_FALSE(point.contains("released"));
+  }
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "a witness claims nothing of undetermined atoms") {
+  const std::string model =
+      "range time 0 1\nsort s\ns A,B\nfluent On(s)\nevent Go(s)\npredicate P(s)\n"
+      "P(A) | P(B).\n[s,time] Releases(Go(s),On(s),time).\n";
+  const auto document = diff(model + "Happens(Go(A),0).\n", model + "!Happens(Go(A),0).\n");
+  CHECK(code == 1);
+  for (const auto* side : {"lost", "gained"}) {
+    CAPTURE(std::string(side));
+    const auto& witness = document["traces"][side]["witness"];
+    REQUIRE(witness.is_object());
+    check_tells_nothing_else(witness);
+    CHECK(witness["timepoints"][0].contains("happens"));
+    write("witness.jsonl", witness.dump() + "\n");
+    const auto* name = side == std::string("lost") ? "old.e" : "new.e";
+    CHECK(parallax({"traces", name, "--replay", "witness.jsonl"}).code == 0);
+  }
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "a witness of trace files agrees with the model of its file") {
+  const std::string model = "range time 0 1\nfluent F()\nevent E()\npredicate P()\nP().\n";
+  write("old.e", model);
+  write("new.e", model + "!Happens(E(),0).\n");
+  for (const std::string format : {"jsonl", "itf"}) {
+    CAPTURE(format);
+    for (const std::string name : {"old", "new"}) {
+      const auto listed = parallax({"traces", name + ".e", "--limit", "0", "--format", format});
+      REQUIRE(listed.code == 0);
+      write(name + ".jsonl", listed.out);
+    }
+    const auto result = parallax({"diff", "old.jsonl", "new.jsonl", "--json"});
+    CHECK(result.code == 1);
+    const auto witness = Json::parse(result.out)["traces"]["lost"]["witness"];
+    check_tells_nothing_else(witness);
+    CHECK(witness["timepoints"][0]["happens"] == Json({"E()"}));
+    // ITF has no place for events at the last timepoint.
+    CHECK(witness["timepoints"][1].contains("happens") == (format == "jsonl"));
+    write("witness.jsonl", witness.dump() + "\n");
+    CHECK(parallax({"traces", "old.e", "--replay", "witness.jsonl"}).code == 0);
+  }
+}
+
 TEST_CASE_FIXTURE(DiffFixture, "trace files are read as strictly as traces --replay reads them") {
   write("m.e", "range time 0 1\nfluent F()\nevent E()\n");
   const std::string good =

@@ -59,6 +59,9 @@ TEST_CASE("what a number of traces does not tell, and a list of them does") {
   CHECK(witness["case"] == "s/suite.yaml:count");
   CHECK(witness["timepoints"][0]["happens"] == Json{"Press()"});
   CHECK(witness["timepoints"][1]["holds"] == Json{"On()"});
+  // Nothing is claimed of what may be undetermined.
+  CHECK_FALSE(witness.contains("predicates"));
+  CHECK_FALSE(witness["timepoints"][1].contains("released"));
 
   write_cases(cli, true);
   const auto listed = json_of(cli, {"suite", "s", "--mutate"}, 0);
