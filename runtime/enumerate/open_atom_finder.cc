@@ -189,16 +189,13 @@ std::optional<std::vector<std::int32_t>> OpenAtomFinder::open_of_prefix(const Tr
   }
 }
 
-std::optional<OpenAtoms> OpenAtomFinder::find(const Trace& trace) {
+OpenAtoms OpenAtomFinder::atoms_of(const Trace& trace, std::vector<std::int32_t> variables) const {
   OpenAtoms atoms;
-  if (!has_hidden_ || none_.value_or(false)) return atoms;
-  auto open = model_->has_constraints ? open_of_prefix(trace) : open_of_whole(trace);
-  if (!open) return std::nullopt;
-  if (open->empty()) return atoms;
-  std::sort(open->begin(), open->end());
+  if (variables.empty()) return atoms;
+  std::sort(variables.begin(), variables.end());
   atoms.released.resize(trace.points.size());
   model_->for_each_atom([&](const AtomRef& atom) {
-    if (!std::binary_search(open->begin(), open->end(), atom.variable)) return;
+    if (!std::binary_search(variables.begin(), variables.end(), atom.variable)) return;
     if (atom.kind == AtomKind::kPredicate) {
       atoms.predicates.push_back(atom.name);
     } else {
@@ -208,6 +205,19 @@ std::optional<OpenAtoms> OpenAtomFinder::find(const Trace& trace) {
   std::sort(atoms.predicates.begin(), atoms.predicates.end());
   for (auto& fluents : atoms.released) std::sort(fluents.begin(), fluents.end());
   return atoms;
+}
+
+std::optional<OpenAtoms> OpenAtomFinder::find(const Trace& trace) {
+  if (!has_hidden_ || none_.value_or(false)) return OpenAtoms();
+  auto open = model_->has_constraints ? open_of_prefix(trace) : open_of_whole(trace);
+  if (!open) return std::nullopt;
+  return atoms_of(trace, *std::move(open));
+}
+
+OpenAtoms OpenAtomFinder::all_hidden(const Trace& trace) const {
+  std::vector<std::int32_t> variables;
+  for (const auto literal : hidden_of(trace)) variables.push_back(literal.var());
+  return atoms_of(trace, std::move(variables));
 }
 
 }  // namespace parallax::runtime

@@ -40,11 +40,14 @@ class OpenAtomFinder {
   bool none_is_open();
   /// The atoms that a trace of the model leaves open. None if the solver was stopped.
   std::optional<OpenAtoms> find(const Trace& trace);
+  /// All ReleasedAt and user predicates up to the end of the trace: no other atom can be open.
+  OpenAtoms all_hidden(const Trace& trace) const;
 
  private:
   bool is_defined() const;
   std::vector<Literal> assumptions_of(const Trace& trace) const;
   std::vector<Literal> hidden_of(const Trace& trace) const;
+  OpenAtoms atoms_of(const Trace& trace, std::vector<std::int32_t> variables) const;
   SolveStatus find_other(Timepoint n, std::vector<Literal>& assumptions,
                          const std::vector<Literal>& same);
   std::optional<std::vector<std::int32_t>> open_of_whole(const Trace& trace);

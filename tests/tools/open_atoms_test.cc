@@ -421,5 +421,50 @@ TEST_CASE("a stop before the open atoms of a trace are known leaves the trace ou
   CHECK(context.text.empty());
 }
 
+/// The trace as a format prints it where no solver tells which atoms are open.
+std::string unsettled(const TextModel& text, const Trace& trace, const std::string& format) {
+  compiler::Compilation compilation;
+  compilation.model = text.compiled;
+  std::atomic<bool> stop = false;
+  Capture context({.json = format == "json"}, stop);
+  const tools::CertifyOption nothing;
+  tools::TraceCertifier certifier(nothing, {}, compilation.model, context);
+  const auto options = named();
+  const auto listing = tools::make_listing(options, {format, {}}, false, compilation, context);
+  const std::atomic<bool> given_up = true;
+  runtime::OpenAtomFinder finder(
+      compilation.model, [&given_up] { return runtime::make_cadical_solver(&given_up); }, false);
+  tools::TraceWriter::Form form{format, false, 0, listing.get(), &finder};
+  form.prints_unsettled = true;
+  tools::TraceWriter writer(form, nullptr, certifier, context);
+  writer.write(trace);
+  CHECK(writer.count() == 1);
+  CHECK_FALSE(writer.cut_short());
+  return format == "json" ? writer.list() : context.text;
+}
+
+TEST_CASE("a trace whose open atoms nobody can tell is printed, and nothing is claimed of them") {
+  const TextModel text(
+      "range time 0 1\nfluent F()\nevent E()\npredicate P()\npredicate Q()\nP() | Q().\n"
+      "[time] Releases(E(),F(),time).\nHappens(E(),0).\n");
+  REQUIRE(text.ground != nullptr);
+  ModelTraces traces(text.compiled, query(Strategy::kBlocking, Distinct::kObservable));
+  const auto trace = traces.next();
+  REQUIRE(trace.has_value());
+  const auto vocabulary = runtime::vocabulary_of(text.compiled);
+  const auto hidden = hidden_of(*trace, vocabulary);
+  REQUIRE(hidden.size() == 4);
+  Hidden nothing;
+  for (const auto& [atom, value] : hidden) nothing[atom] = std::nullopt;
+  for (const auto* format : {"jsonl", "json", "itf"}) {
+    CAPTURE(std::string(format));
+    const auto printed = unsettled(text, *trace, format);
+    CHECK(read_back(printed, text.compiled) == std::vector{nothing});
+    CHECK(printed.find("undetermined") == std::string::npos);
+  }
+  CHECK(read_table(unsettled(text, *trace, "csv"), vocabulary) == std::vector{nothing});
+  check_models(unsettled(text, *trace, "decreasoner"), {nothing});
+}
+
 }  // namespace
 }  // namespace parallax::test

@@ -62,6 +62,43 @@ TEST_CASE("verify: what only a prefix that cannot go on violates is no violation
         0);
 }
 
+/// Whether Easy() can be false is a question of eleven pigeons in ten holes.
+std::string pigeons() {
+  std::string text =
+      "range time 0 1\nsort pigeon\nsort hole\nfluent F()\nevent E()\npredicate Easy()\n"
+      "predicate In(pigeon,hole)\n[time] Initiates(E(),F(),time).\n!HoldsAt(F(),0).\n"
+      "[pigeon] Easy() | {hole} In(pigeon,hole).\n"
+      "[pigeon1,pigeon2,hole] pigeon1!=pigeon2 & In(pigeon1,hole) & In(pigeon2,hole) -> Easy().\n";
+  for (int i = 1; i <= 11; ++i) text += "pigeon G" + std::to_string(i) + "\n";
+  for (int i = 1; i <= 10; ++i) text += "hole H" + std::to_string(i) + "\n";
+  return text;
+}
+
+/// The trace says what holds and happens, and nothing else.
+void check_observable(const nlohmann::json& trace, const nlohmann::json& happens) {
+  REQUIRE(trace.is_object());
+  CHECK(trace["timepoints"][0]["happens"] == happens);
+  CHECK_FALSE(trace["timepoints"][0].contains("released"));
+  CHECK_FALSE(trace.contains("predicates"));
+  CHECK_FALSE(trace.contains("undetermined"));
+}
+
+TEST_CASE(
+    "a violation or a best trace is told also where its undetermined atoms are hard to tell") {
+  const CliFixture cli;
+  cli.write("pigeons.e", pigeons());
+  const auto violated =
+      json_of(cli, {"verify", "pigeons.e", "--property", "!HoldsAt(F(),time)"}, 1);
+  CHECK(violated["verdict"] == "violated");
+  check_observable(violated["trace"], nlohmann::json::array({"E()"}));
+  const auto best = json_of(cli, {"traces", "pigeons.e", "--minimize", "count Happens(E(),time)",
+                                  "--limit", "1", "--order", "any"});
+  CHECK(best["traces"] == 1);
+  CHECK(best["proved"] == true);
+  REQUIRE(best["list"].size() == 1);
+  check_observable(best["list"][0], nlohmann::json::array());
+}
+
 TEST_CASE("verify: a model whose prefixes all end before the horizon has no execution") {
   const CliFixture cli;
   cli.write("stuck.e",

@@ -25,19 +25,23 @@ const runtime::TraceFormat& TraceWriter::format() const {
 /// False if a stop was raised before it was known which atoms are open.
 bool TraceWriter::print(const runtime::Trace& trace) {
   if (form_.count_only) return true;
-  runtime::OpenAtoms open;
+  std::optional<runtime::OpenAtoms> open = runtime::OpenAtoms();
   if (form_.open_atoms != nullptr) {
     if (count_ == kAskedOneByOne) (void)form_.open_atoms->none_is_open();
-    auto found = form_.open_atoms->find(trace);
-    if (!found) return false;
-    open = *std::move(found);
+    open = form_.open_atoms->find(trace);
+    if (!open && !form_.prints_unsettled) return false;
   }
+  const auto line = [&] {
+    return open ? runtime::to_jsonl(trace, *open) : runtime::observable_jsonl(trace);
+  };
   if (context_.form().json) {
-    list_ += (list_.empty() ? "" : ",") + runtime::to_jsonl(trace, open);
+    list_ += (list_.empty() ? "" : ",") + line();
   } else if (form_.listing != nullptr) {
-    context_.result(form_.listing->trace(trace, open));
+    // Where nothing is claimed of an atom, these formats leave it out like an undetermined one.
+    context_.result(
+        form_.listing->trace(trace, open ? *open : form_.open_atoms->all_hidden(trace)));
   } else if (form_.format == "jsonl") {
-    context_.result(runtime::to_jsonl(trace, open) + '\n');
+    context_.result(line() + '\n');
   } else {
     context_.result(runtime::to_text(trace));
   }

@@ -26,6 +26,8 @@ class TraceWriter {
     /// Finds what a trace leaves open, for forms that print such atoms; outlives the writer.
     /// None: traces are printed as they were found.
     runtime::OpenAtomFinder* open_atoms = nullptr;
+    /// Where the finder gives up, prints the trace and claims nothing of atoms that may be open.
+    bool prints_unsettled = false;
   };
   /// `check` may be null; else it outlives the writer, as the others do.
   TraceWriter(Form form, TraceCheck* check, TraceCertifier& certifier, Context& context)

@@ -334,10 +334,11 @@ int list_witness(const TracesOptions& options, const compiler::Compilation& comp
     };
     open_atoms.emplace(bounded ? *bounded : model, make_solver, false);
   }
-  TraceWriter writer(form_of(options, listing.get(), open_atoms ? &*open_atoms : nullptr),
-                     check ? &*check : nullptr, none, invocation);
+  auto form = form_of(options, listing.get(), open_atoms ? &*open_atoms : nullptr);
+  form.prints_unsettled = true;
+  TraceWriter writer(std::move(form), check ? &*check : nullptr, none, invocation);
   if (optimum.witness) writer.write(*optimum.witness);
-  const bool proved = optimum.proved() && !writer.cut_short();
+  const bool proved = optimum.proved();
   if (proved) {
     if (!options.certify.file.empty()) {
       best.certify(options.certify, options.model.models, model, invocation);

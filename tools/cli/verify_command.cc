@@ -40,7 +40,8 @@ struct VerifyOptions {
 /// The answer, before it is printed.
 struct Answer {
   std::optional<runtime::Trace> violation;
-  /// Atoms that the violation leaves open; none: not asked for, or too hard to tell.
+  /// Atoms that the violation leaves open; none: not asked for, or too hard to tell. Then nothing
+  /// is claimed of any that might be open.
   std::optional<runtime::OpenAtoms> open;
   runtime::Exploration exploration = runtime::Exploration::kStopped;
   std::vector<std::string> bounds;
@@ -214,9 +215,8 @@ std::string answer_json(const compiler::CompiledModel& model, const Answer& answ
       }
     }
     out["performed"] = std::move(performed);
-    if (answer.open) {
-      out["trace"] = base::parse_ordered_json(to_jsonl(*answer.violation, *answer.open));
-    }
+    out["trace"] = base::parse_ordered_json(answer.open ? to_jsonl(*answer.violation, *answer.open)
+                                                        : observable_jsonl(*answer.violation));
   }
   if (answer.rests_on) {
     out["rests_on"] = nlohmann::ordered_json::array();
