@@ -19,11 +19,12 @@ std::size_t variable_of(ClausePropagation::Code code) { return code >> 1U; }
 }  // namespace
 
 OpenVariables::OpenVariables(const compiler::CompiledModel& model, std::span<const Literal> asked,
-                             MakeSolver make_solver)
+                             MakeSolver make_solver, Bounds bounds)
     : state_(model.variable_count()),
       is_asked_(static_cast<std::size_t>(model.variable_count()), false),
       make_solver_(std::move(make_solver)),
-      parents_(static_cast<std::size_t>(model.variable_count())) {
+      parents_(static_cast<std::size_t>(model.variable_count())),
+      bounds_(bounds) {
   Codes codes;
   for (std::size_t i = 0; i < model.clauses.size(); ++i) {
     codes.clear();
@@ -126,6 +127,16 @@ std::optional<std::vector<std::int32_t>> OpenVariables::open_in(const Component&
   return open;
 }
 
+void OpenVariables::keep(Component component, const std::vector<std::int32_t>& open) {
+  if (component.size() > bounds_.one) return;
+  if (known_.size() == kMostKnown || kept_codes_ + component.size() > bounds_.all) {
+    known_.clear();
+    kept_codes_ = 0;
+  }
+  kept_codes_ += component.size();
+  known_.emplace(std::move(component), open);
+}
+
 std::optional<std::vector<std::int32_t>> OpenVariables::find(std::span<const Literal> told) {
   set(told);
   std::vector<std::int32_t> open;
@@ -138,14 +149,14 @@ std::optional<std::vector<std::int32_t>> OpenVariables::find(std::span<const Lit
       is_asked = is_asked || is_asked_[variable_of(code)];
     }
     if (!is_asked) continue;
-    auto known = known_.find(component);
-    if (known == known_.end()) {
-      const auto found = open_in(component);
-      if (!found) return std::nullopt;
-      if (known_.size() == kMostKnown) known_.clear();
-      known = known_.emplace(std::move(component), *found).first;
+    if (const auto known = known_.find(component); known != known_.end()) {
+      open.insert(open.end(), known->second.begin(), known->second.end());
+      continue;
     }
-    open.insert(open.end(), known->second.begin(), known->second.end());
+    const auto found = open_in(component);
+    if (!found) return std::nullopt;
+    open.insert(open.end(), found->begin(), found->end());
+    keep(std::move(component), *found);
   }
   // A variable without a remaining clause may have either value.
   for (const auto variable : asked_) {
