@@ -134,6 +134,20 @@ std::map<std::string, LcovFile> read_lcov(const std::string& text) {
   return files;
 }
 
+TEST_CASE("the text of a long axiom is cut between two characters") {
+  const CoveredRun cli;
+  std::string text = "[drawer,time] HoldsAt(Open(drawer),time) -> ; ";
+  text += std::string((99 - text.size()) % 2, '+');
+  while (text.size() < 200) text += "\u00e9";  // one of them has the bytes 99 and 100
+  cli.write("two/cover.e",
+            cli.read("two/cover.e") + text + "\n  Initiates(OpenDrawer(drawer),Bent(),time).\n");
+  CHECK(cli.parallax({"run", "two/cover.yaml", "--out", "out"}).code == 1);
+  const auto coverage = json_of(cli, {"coverage", "out"});
+  std::set<std::string> texts;
+  for (const auto& item : coverage.at("axioms")) texts.insert(item.value("text", ""));
+  CHECK(texts.contains(text.substr(0, 99) + "..."));
+}
+
 TEST_CASE("a run's report says how much of plan and model its simulations went through") {
   const CoveredRun cli;
   // It ends at the first trace, in which the drawer sticks twice.

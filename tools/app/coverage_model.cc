@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "compiler/base/utf8.h"
 #include "compiler/base/words.h"
 #include "tools/app/coverage_plan.h"
 #include "tools/app/trace_check.h"
@@ -13,12 +14,14 @@ using compiler::TypedFormulaId;
 
 namespace {
 
-/// A statement on one line, cut after 100 characters.
+/// A statement on one line, cut after the last character that ends within 100 bytes.
 std::string short_line(std::string_view text) {
   constexpr std::size_t kMost = 100;
   auto out = base::one_line(text);
   if (out.size() <= kMost) return out;
-  out.resize(kMost);
+  auto end = kMost;
+  while (end > 0 && base::continues_code_point(out[end])) --end;
+  out.resize(end);
   return out + "...";
 }
 
