@@ -31,12 +31,12 @@ std::string name_with_version(const harness::SimulatorInfo& info) {
 void add_opinion_options(OptionTable& command, OpinionOptions& options) {
   command
       .option(kOption, options.other,
-              "Simulate every discrepancy and some clean simulations again, from the same starts, "
-              "with another engine (ode, mujoco) or another simulator, started by this command")
+              "Repeat discrepancies, and some clean runs, with another engine or simulator")
+      .details("From the same starts: ode, mujoco, or the command that starts another simulator.")
       .named_value("ENGINE|COMMAND");
   command
       .option("--second-opinion-runs", options.clean,
-              "Of --second-opinion: so many clean simulations")
+              "Number of clean simulations that --second-opinion repeats")
       .check(WholeNumber{0, 1'000'000})
       .needs(kOption)
       .show_default();
