@@ -18,7 +18,7 @@ struct ValuePlace {
   std::uint32_t slot = 0;
 };
 
-/// Where a value may go in the code of a plan, without running it. The value is followed from its
+/// Follows a value through the code of a plan, without running it. The value is followed from its
 /// place through every instruction that moves it: copies of variables, parts of lists, multiple
 /// values, jumps and exits, results of calls to all their callers. Each pair of an instruction and
 /// a place on the stack is visited once.

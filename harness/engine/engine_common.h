@@ -7,7 +7,7 @@
 
 #include "compiler/base/hash.h"
 
-// What the step of every engine needs beside the engine.
+// Helpers that the steps of all engines share.
 
 namespace parallax::harness {
 

@@ -50,13 +50,13 @@ class Sought {
   std::optional<BodyId> only_;
 };
 
-/// What a probe or a ray has met: how deep it is in there, or how far away that is [m].
+/// A hit of a probe or a ray, with the depth of the probe or the distance along the ray [m].
 struct Met {
   const ContactSide* side = nullptr;
   double metres = 0.0;
 };
 
-/// What is the same for the worlds of all engines.
+/// State and functions that the worlds of all engines share.
 class EngineWorld : public PhysicsWorld {
  public:
   const WorldLayout& layout() const final { return state_->layout; }

@@ -87,7 +87,7 @@ class Summary {
     auto lines = wrapped(plain + (text.empty() ? "" : ": "), text, 2);
     out_ += lines.replace(0, plain.size(), word);
     if (differs) {
-      // Where nobody was asked, the command that asks is among the pointers below.
+      // Without an opinion, the pointers below name the command that asks for one.
       const auto standing = standing_of(result_, *found_.front());
       if (standing.is != Standing::kNotAsked) line("standing", standing.words);
     }

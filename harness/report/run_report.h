@@ -25,7 +25,7 @@ struct ReportedDiscrepancy {
   std::string id() const;
 };
 
-/// What the report says of one trace.
+/// One trace of the report.
 struct ReportedTrace {
   std::int64_t number = 0;
   std::string verdict;  // "no-discrepancy", "discrepancy", "inconclusive"

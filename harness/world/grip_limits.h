@@ -30,7 +30,7 @@ struct DoubtfulGrip {
   double sound_s = 0.0;  // at this step, and at smaller ones, none slipped
 };
 
-/// Where mass and squeeze of a grip are not those of the world: what is drawn, or an action gives.
+/// Ranges of mass and squeeze that a draw or an action gives instead of the values of the world.
 struct GripRange {
   std::optional<double> lightest_kg, heaviest_kg;
   std::optional<double> gentlest_n, firmest_n;
