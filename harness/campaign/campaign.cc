@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <string>
 
 #include "compiler/base/codes/campaigns.h"
@@ -13,6 +14,7 @@
 #include "harness/campaign/journal.h"
 #include "harness/campaign/repetition.h"
 #include "harness/campaign/run_setup.h"
+#include "harness/campaign/start_words.h"
 #include "harness/campaign/trace_campaign.h"
 #include "harness/campaign/trace_family.h"
 #include "harness/confidence/family.h"
@@ -108,8 +110,9 @@ class Campaign {
 
   base::Result<TraceEnd> one_trace(CampaignTrace trace) {
     auto trial = Trial::prepare(bench_, std::move(trace));
-    if (!trial || !announce(trial->plan())) return sink_.already_reported();
+    if (!trial || !announce(*trial)) return sink_.already_reported();
     trial->continue_from(*journal_);
+    trial->announce_by([this](const TracePlan& plan) { return announce_start(plan); });
     const TraceContext context{scenario_, options_, family_, bench_,          *journal_,
                                recorder_, files_,   sink_,   warned_of_limit_};
     auto outcome = run_trace(context, *std::move(trial));
@@ -124,16 +127,21 @@ class Campaign {
   }
 
   /// Writes the trace down before its first sample, or finds it as it was written down.
-  base::Status announce(const TracePlan& plan) {
-    TraceLine line{plan.trace, plan.calls};
+  base::Status announce(const Trial& trial) {
+    const auto& plan = trial.plan();
+    TraceLine line{plan.trace, plan.calls, 0, trial.starts().law_text()};
     if (const auto* recorded = journal_->find(plan.trace->number)) {
       // The plan may be named from elsewhere, as the scenario may.
       if (!same_but_for_places(*recorded, line)) {
         const auto number = plan.trace->number;
         if (recorded->trace->key == plan.trace->key) {
-          return sink_.error(codes::kForeignJournalLine,
-                             journal_->recorded().trace_places.at(number),
-                             "it has the events of the trace, but not its states and calls");
+          const bool other_law = recorded->initial_states != line.initial_states;
+          return sink_.error(
+              codes::kForeignJournalLine, journal_->recorded().trace_places.at(number),
+              other_law ? fmt::format("its initial states are drawn otherwise: {}, now {}",
+                                      law_or_first(recorded->initial_states),
+                                      law_or_first(line.initial_states))
+                        : "it has the events of the trace, but not its states and calls");
         }
         return sink_.error(codes::kJournalMismatch, journal_->recorded().trace_places.at(number),
                            fmt::format("trace {}", number), recorded->trace->key, plan.trace->key);
@@ -151,12 +159,36 @@ class Campaign {
     return base::Unit{};
   }
 
+  static std::string law_or_first(const std::string& law) {
+    return law.empty() ? "only the first" : law;
+  }
+
+  /// The same of the trace from another initial state.
+  base::Status announce_start(const TracePlan& plan) {
+    TraceLine line{plan.trace, plan.calls, plan.start_state, {}};
+    const auto number = plan.trace->number;
+    if (const auto* recorded = journal_->find(number, plan.start_state)) {
+      if (!same_but_for_places(*recorded, line)) {
+        return sink_.error(codes::kForeignJournalLine,
+                           journal_->recorded().start_places.at({number, plan.start_state}),
+                           "it is not how the trace goes from this initial state");
+      }
+      if (!check_recorded(plan)) return sink_.already_reported();
+    } else {
+      journal_->append(line);
+    }
+    lines_.push_back(std::move(line));
+    return base::Unit{};
+  }
+
+  /// Holds the simulations on record that begin in the plan's initial state against their draws.
   base::Status check_recorded(const TracePlan& plan) {
     const auto& recorded = journal_->recorded();
     const SampleKey first(plan.trace->number, 0, DrawPhase::kCertify);
     for (auto at = recorded.samples.lower_bound(first); at != recorded.samples.end(); ++at) {
       const auto& record = at->second;
       if (record.trace != plan.trace->number) break;
+      if (record.start_state != plan.start_state) continue;
       const bool of_search = record.sample <= scenario_.search.runs;
       if (record.phase == DrawPhase::kConfirm && of_search) continue;  // of the one before it
       auto why = wrong_draw(record, plan.sampler, plan.campaign_seed, plan.trace_key);
@@ -180,6 +212,7 @@ class Campaign {
     bench_.close();
     if (complete) recorder_.finish(consumed_);
     recorder_.report(sink_);
+    if (complete) keep_used_lines();
     if (complete && !journal_->rewrite(lines_, std::move(consumed_), sink_)) {
       return sink_.already_reported();
     }
@@ -202,6 +235,19 @@ class Campaign {
       result_.timing.simulated_s = sampled_.simulated_s;
     }
     return std::move(result_);
+  }
+
+  /// Puts the lines of traces in order, without those of initial states that only simulations
+  /// began in that ran ahead.
+  void keep_used_lines() {
+    std::set<StartKey> used;
+    for (const auto& record : consumed_) used.emplace(record.trace, record.start_state);
+    std::erase_if(lines_, [&](const TraceLine& line) {
+      return line.start_state > 0 && !used.contains({line.trace->number, line.start_state});
+    });
+    std::stable_sort(lines_.begin(), lines_.end(), [](const TraceLine& a, const TraceLine& b) {
+      return std::pair(a.trace->number, a.start_state) < std::pair(b.trace->number, b.start_state);
+    });
   }
 
   /// Keeps the result of the search for traces, whatever ended the simulations.
@@ -234,14 +280,11 @@ class Campaign {
     if (!result_.spending) return;
     std::vector<FamilyMember> members;
     for (const auto& trace : result_.traces) {
-      members.push_back({trace.clean,
-                         trace.lost,
-                         trace.simulations,
-                         trace.verdict == CampaignVerdict::kDiscrepancy,
-                         trace.rejected > 0,
-                         trace.trace->other_initial_states == base::Known::kYes,
-                         trace.stated,
-                         {trace.law ? trace.law->text() : std::string(), trace.left_out}});
+      members.push_back(
+          {trace.clean, trace.lost, trace.simulations,
+           trace.verdict == CampaignVerdict::kDiscrepancy, trace.rejected > 0, trace.stated,
+           trace.shared,
+           drawn_starts(trace, {trace.law ? trace.law->text() : std::string(), trace.left_out})});
     }
     FamilyScope scope;
     scope.split_initial = options_.split_initial;

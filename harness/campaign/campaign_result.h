@@ -10,6 +10,7 @@
 #include "harness/campaign/sample_record.h"
 #include "harness/campaign/search_result.h"
 #include "harness/campaign/start_law.h"
+#include "harness/campaign/start_result.h"
 #include "harness/campaign/trace_input.h"
 #include "harness/confidence/comparison.h"
 #include "harness/confidence/criterion_spec.h"
@@ -158,7 +159,9 @@ struct LossCount {
 struct TraceResult {
   std::shared_ptr<const CampaignTrace> trace;
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
-  std::vector<SampledDimension> start_region;  // the continuous states that it stands for
+  StartResult starts;       // the initial states that were simulated
+  bool is_decided = false;  // the criterion was met, whatever the verdict waits for besides
+  std::vector<SampledDimension> start_region;  // the continuous states that the first stands for
   std::vector<StartShare> start_shares;        // how much of their cells is drawn from
   std::string left_out;          // the part of the region that is never drawn; empty: none
   std::optional<LawResult> law;  // none: starts are uniform
@@ -177,6 +180,7 @@ struct TraceResult {
   double certified_epsilon = 1.0;  // with confidence C, p is below this
   double error_share = 1.0;        // of 1-C that the bound may spend
   CertifiedBound stated;           // by the criterion itself
+  CertifiedBound shared;           // the same with the trace's share of the error
   std::optional<std::int64_t> paper_stopped_at;
   std::string paper_variant;             // "paper-literal, n = 2"
   std::vector<std::string> not_covered;  // fluents without regression evidence

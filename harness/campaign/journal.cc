@@ -11,6 +11,7 @@
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
+#include "compiler/base/contract.h"
 #include "compiler/base/file_io.h"
 #include "harness/campaign/sample_runner.h"
 
@@ -64,12 +65,26 @@ class JournalReader {
     if (const auto* foreign = std::get_if<ForeignLine>(&decoded)) return foreign->why;
     if (auto* trace = std::get_if<TraceLine>(&decoded)) {
       const auto number = trace->trace->number;
+      if (trace->start_state > 0) return take_start(*std::move(trace));
       const bool fresh = journal_.traces.emplace(number, std::move(*trace)).second;
       if (!fresh) return "trace " + std::to_string(number) + " stands there twice";
       journal_.trace_places.emplace(number, line_);
       return std::nullopt;
     }
     return take_record(std::get<SampleRecord>(std::move(decoded)));
+  }
+
+  /// The same trace from another of its initial states.
+  std::optional<std::string> take_start(TraceLine line) {
+    const auto first = journal_.traces.find(line.trace->number);
+    if (first == journal_.traces.end()) return "its trace was not announced before it";
+    if (first->second.trace->key != line.trace->key) return "its key is not that of its trace";
+    const StartKey key(line.trace->number, line.start_state);
+    if (!journal_.starts.emplace(key, std::move(line)).second) {
+      return "this initial state of the trace stands there twice";
+    }
+    journal_.start_places.emplace(key, line_);
+    return std::nullopt;
   }
 
   std::optional<std::string> take_record(SampleRecord record) {
@@ -83,6 +98,9 @@ class JournalReader {
     }
     if (trace == journal_.traces.end() && !record.path) {
       return "its trace was not announced before it";
+    }
+    if (record.start_state > 1 && !journal_.starts.contains({record.trace, record.start_state})) {
+      return "its initial state was not announced before it";
     }
     const auto events = record.path ? record.path->steps.size() : trace->second.calls.size();
     const bool whole = record.observations.size() == events + 1 && record.outcomes.size() == events;
@@ -104,10 +122,13 @@ class JournalReader {
         return "it differs from the simulation that it repeats, but for the digest";
       }
     }
-    if (!journal_.samples.emplace(key, std::move(record)).second) {
-      return "this simulation stands there twice";
-    }
-    journal_.places.emplace(key, line_);
+    // One that ran ahead of a loss may have been made anew from another initial state.
+    const auto before = journal_.samples.find(key);
+    const bool anew = before != journal_.samples.end() && record.start_state > 0 &&
+                      before->second.start_state > 0;
+    if (before != journal_.samples.end() && !anew) return "this simulation stands there twice";
+    journal_.samples.insert_or_assign(key, std::move(record));
+    journal_.places.insert_or_assign(key, line_);
     return std::nullopt;
   }
 
@@ -117,6 +138,9 @@ class JournalReader {
     if (first.status != SampleStatus::kOk) return "it repeats a simulation that was lost";
     if (again.initial != first.initial || again.seed != first.seed) {
       return "it repeats a simulation with another start or seed";
+    }
+    if (again.start_state != first.start_state) {
+      return "it repeats a simulation from another initial state";
     }
     if (again.attempt != first.attempt || again.rejected != first.rejected ||
         again.redrawn != first.redrawn) {
@@ -282,7 +306,31 @@ base::Result<std::unique_ptr<Journal>> Journal::open(RunFolder folder, const Jou
   return journal;
 }
 
-const TraceLine* Journal::find(std::int64_t trace) const {
+const TraceLine* JournalText::find_line_of(const SampleRecord& record) const {
+  if (record.start_state > 1) {
+    const auto found = starts.find({record.trace, record.start_state});
+    return found == starts.end() ? nullptr : &found->second;
+  }
+  const auto found = traces.find(record.trace);
+  return found == traces.end() ? nullptr : &found->second;
+}
+
+const TraceLine& JournalText::line_of(const SampleRecord& record) const {
+  const auto* line = find_line_of(record);
+  PARALLAX_REQUIRE(line != nullptr, "the reader holds each simulation against its trace");
+  return *line;
+}
+
+const SourceRange& JournalText::line_place_of(const SampleRecord& record) const {
+  if (record.start_state > 1) return start_places.at({record.trace, record.start_state});
+  return trace_places.at(record.trace);
+}
+
+const TraceLine* Journal::find(std::int64_t trace, std::int64_t start_state) const {
+  if (start_state > 1) {
+    const auto found = recorded_.starts.find({trace, start_state});
+    return found == recorded_.starts.end() ? nullptr : &found->second;
+  }
   const auto found = recorded_.traces.find(trace);
   return found == recorded_.traces.end() ? nullptr : &found->second;
 }
@@ -315,9 +363,12 @@ base::Status Journal::rewrite(const std::vector<TraceLine>& traces,
   });
   std::string text = encode(header_) + '\n';
   auto record = consumed.begin();
-  for (const auto& trace : traces) {
-    text += encode(trace) + '\n';
-    for (; record != consumed.end() && record->trace == trace.trace->number; ++record) {
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    text += encode(traces[i]) + '\n';
+    const auto number = traces[i].trace->number;
+    // Its other initial states come before its simulations.
+    if (i + 1 < traces.size() && traces[i + 1].trace->number == number) continue;
+    for (; record != consumed.end() && record->trace == number; ++record) {
       text += encode(*record) + '\n';
     }
   }

@@ -38,16 +38,27 @@ inline constexpr std::string_view kJournalName = "journal.ndjson";
 
 using SampleKey = std::tuple<std::int64_t, std::int64_t, DrawPhase>;  // trace, sample
 
+/// A trace, and one of its initial states as TraceLine has it.
+using StartKey = std::pair<std::int64_t, std::int64_t>;
+
 /// A journal as it was read.
 struct JournalText {
   /// None when the run was ended before its first line was complete.
   std::optional<JournalHeader> header;
   std::map<std::int64_t, TraceLine> traces;
+  std::map<StartKey, TraceLine> starts;  // of traces, from their other initial states
   std::map<SampleKey, SampleRecord> samples;
   std::map<SampleKey, base::SourceRange> places;  // their lines, without the newline
   std::map<std::int64_t, base::SourceRange> trace_places;
+  std::map<StartKey, base::SourceRange> start_places;
   base::FileId file;
   std::size_t complete_bytes = 0;  // up to the end of the last whole line
+
+  /// The trace of a simulation, from its initial state, which is there.
+  const TraceLine& line_of(const SampleRecord& record) const;
+  /// Null where it is not.
+  const TraceLine* find_line_of(const SampleRecord& record) const;
+  const base::SourceRange& line_place_of(const SampleRecord& record) const;
 };
 
 /// Reads RUN_DIR/journal.ndjson. A last line without its newline is dropped with kJournalTruncated;
@@ -83,7 +94,7 @@ class Journal {
   /// The lines that were there when the journal was opened and are still to be used.
   const JournalText& recorded() const { return recorded_; }
   /// Returns null if the line was not there.
-  const TraceLine* find(std::int64_t trace) const;
+  const TraceLine* find(std::int64_t trace, std::int64_t start_state = 0) const;
   const SampleRecord* find(std::int64_t trace, std::int64_t sample, DrawPhase phase) const;
 
   void append(const TraceLine& trace);

@@ -105,6 +105,10 @@ TraceLine trace_line_of(const Json& object, const std::shared_ptr<compiler::Symb
   trace->number = count_of(object, "trace", 1);
   trace->key = get<std::string>(object, "key");
   trace->symbols = symbols;
+  if (object.contains("start_state")) line.start_state = count_of(object, "start_state", 2);
+  if (object.contains("initial_states")) {
+    line.initial_states = get<std::string>(object, "initial_states");
+  }
   std::vector<std::vector<std::string>> holds;
   for (const auto& fluents : list(object, "holds")) holds.push_back(strings(fluents, "holds"));
   std::vector<std::string> events;
@@ -155,11 +159,12 @@ SampleRecord record_of(const Json& object) {
   record.sample = count_of(object, "sample", 1);
   record.attempt = count_of(object, "attempt", 0);
   const auto phase = get<std::string>(object, "phase");
-  if (phase != "certify" && phase != "confirm" && phase != "search") {
+  if (phase != "certify" && phase != "confirm" && phase != "search" && phase != "visit") {
     throw Foreign{"`phase` is `" + phase + "`"};
   }
   // A search has numbers of its own, so its simulations are found as others are.
   record.searched = phase == "search";
+  record.visit = phase == "visit";
   record.phase = phase == "confirm" ? DrawPhase::kConfirm : DrawPhase::kCertify;
   record.seed = get<std::uint64_t>(object, "seed");
   record.status = word_of(object, "status", {SampleStatus::kOk, SampleStatus::kLost});
@@ -179,7 +184,11 @@ SampleRecord record_of(const Json& object) {
          outcome.contains("margins") ? state_of(field(outcome, "margins"), "margins") : State()});
   }
   record.digest = get<std::string>(object, "digest");
-  if (object.contains("path")) record.path = path_of(object);
+  if (object.contains("path")) {
+    record.path = path_of(object);
+  } else if (object.contains("start_state")) {
+    record.start_state = count_of(object, "start_state", 1);
+  }
   return record;
 }
 
@@ -256,7 +265,10 @@ std::string encode(const JournalHeader& header) {
 
 bool same_but_for_places(const TraceLine& a, const TraceLine& b) {
   const auto &one = *a.trace, &other = *b.trace;
-  if (one.number != other.number || one.key != other.key || a.calls != b.calls) return false;
+  if (one.number != other.number || one.key != other.key || a.calls != b.calls ||
+      a.start_state != b.start_state || a.initial_states != b.initial_states) {
+    return false;
+  }
   if (one.points.size() != other.points.size()) return false;
   for (std::size_t t = 0; t < one.points.size(); ++t) {
     if (one.holds(t) != other.holds(t) || one.happens(t) != other.happens(t)) return false;
@@ -274,6 +286,8 @@ bool operator==(const TraceLine& a, const TraceLine& b) {
 std::string encode(const TraceLine& line) {
   const auto& trace = *line.trace;
   OrderedJson out = {{"trace", trace.number}, {"key", trace.key}};
+  if (line.start_state > 0) out["start_state"] = line.start_state;
+  if (!line.initial_states.empty()) out["initial_states"] = line.initial_states;
   auto holds = OrderedJson::array();
   for (std::size_t t = 0; t < trace.points.size(); ++t)
     holds.push_back(holds_json<OrderedJson>(trace, t));
@@ -294,6 +308,7 @@ std::string encode(const SampleRecord& record) {
                      {"attempt", record.attempt},
                      {"phase", record.phase == DrawPhase::kConfirm ? "confirm"
                                : record.searched                   ? "search"
+                               : record.visit                      ? "visit"
                                                                    : "certify"},
                      {"seed", record.seed},
                      {"status", to_string(record.status)},
@@ -302,6 +317,7 @@ std::string encode(const SampleRecord& record) {
                      {"reason", record.reason},
                      {"initial", state_json<OrderedJson>(record.initial)}};
   if (record.redrawn > 0) out["redrawn"] = record.redrawn;
+  if (record.start_state > 0) out["start_state"] = record.start_state;
   auto observations = OrderedJson::array();
   for (const auto& state : record.observations) {
     observations.push_back(state_json<OrderedJson>(state));

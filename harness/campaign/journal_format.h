@@ -39,6 +39,12 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
 struct TraceLine {
   std::shared_ptr<const CampaignTrace> trace;
   std::vector<ActionCall> calls;  // by event
+  /// Number of the initial state that it begins in, from 2; the line of a trace itself is that of
+  /// the first, or only one, and has 0.
+  std::int64_t start_state = 0;
+  /// How the initial states of the trace are drawn: "uniform of 6". Empty: there is one, or one
+  /// only was sampled, as in older journals.
+  std::string initial_states = {};
   friend bool operator==(const TraceLine& a, const TraceLine& b);
 };
 /// The same trace with the same calls, by names, wherever the plan's events stand.

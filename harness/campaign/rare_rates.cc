@@ -67,7 +67,9 @@ class RareEstimator {
     law.name(trial->plan().sampler);
     rate.law = law.drawn().law;
     rate.left_out = law.drawn().left_out;
-    const UnitCube cube(trial->plan().sampler);
+    const auto made = StartCube::make(trial->starts(), scenario_, bench_.fluents(), sink_);
+    if (!made) return sink_.already_reported();
+    const auto& cube = *made;
     RareEventOptions options;
     options.method = method_;
     options.dimensions = std::max<std::size_t>(1, cube.dimensions());
@@ -90,7 +92,7 @@ class RareEstimator {
     return rate;
   }
 
-  std::optional<std::vector<Evaluation>> simulated(Trial& trial, const UnitCube& cube,
+  std::optional<std::vector<Evaluation>> simulated(Trial& trial, const StartCube& cube,
                                                    std::span<const UnitPoint> points,
                                                    std::int64_t& next, MarginScale& scale,
                                                    bool& failed,
@@ -101,7 +103,7 @@ class RareEstimator {
     std::vector<MarginParts> parts;
     for (std::size_t begin = 0; begin < points.size(); begin += at_once) {
       const auto count = std::min(at_once, points.size() - begin);
-      std::vector<std::optional<State>> starts;
+      std::vector<std::optional<ChosenStart>> starts;
       for (const auto& point : points.subspan(begin, count)) starts.push_back(cube.start_at(point));
       const auto tried = trial.try_starts(next, std::move(starts));
       failed = !tried;
@@ -122,8 +124,9 @@ class RareEstimator {
           return std::nullopt;
         }
         if (answer.kind == EvaluationKind::kClean || answer.kind == EvaluationKind::kDiscrepancy) {
-          parts.back() = margin_parts(*scenario_.mapping, bench_.fluents(), *trial.plan().trace,
-                                      scenario_.comparison(), sample.record);
+          parts.back() = margin_parts(*scenario_.mapping, bench_.fluents(),
+                                      *trial.plan_of(sample.record).trace, scenario_.comparison(),
+                                      sample.record);
           if (is_first) scale.add(parts.back(), answer.kind == EvaluationKind::kDiscrepancy);
         }
         out.push_back(std::move(answer));

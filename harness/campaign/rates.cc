@@ -10,6 +10,7 @@
 #include "harness/campaign/asked_traces.h"
 #include "harness/campaign/judge.h"
 #include "harness/campaign/run_setup.h"
+#include "harness/campaign/start_words.h"
 #include "harness/campaign/trial.h"
 
 namespace parallax::harness {
@@ -74,8 +75,8 @@ class Estimator {
     rates.trace = trace.events();
     std::map<std::string, CauseRate> causes;
     LawCounter law;
-    const auto& plan = trial->plan();
-    law.name(plan.sampler);
+    law.name(trial->plan().sampler);
+    trial->draw_independently();
     bool enough = false;
     while (complete && !enough && trial->next_sample() <= options_.runs) {
       trial->submit_to(last_wanted(trial->next_sample()));
@@ -84,13 +85,15 @@ class Estimator {
       lost_too_often_ = *sample && (*sample)->verdict == SampleVerdict::kLostTooOften;
       complete = *sample && !lost_too_often_;
       if (*sample) {
+        const auto& plan = trial->plan_of((*sample)->record);
         law.add(plan.sampler, plan.campaign_seed, plan.trace_key, (*sample)->record);
-        count(trace, **sample, rates, causes);
+        count(*trial, **sample, rates, causes);
       }
       enough = is_narrow(rates) || is_known(rates);
       report_progress(trace.number, trial->next_sample() - 1);
     }
     trial->end();
+    trial->starts().describe(rates.starts);
     rates.law = law.result();
     rates.left_out = law.drawn().left_out;
     // Bounds that hold at any time do not depend on runs that were not made.
@@ -129,10 +132,11 @@ class Estimator {
         {trace, done, options_.runs, elapsed.count() > 0.0 ? made / elapsed.count() : 0.0});
   }
 
-  void count(const CampaignTrace& trace, const TrialSample& sample, TraceRates& rates,
+  void count(const Trial& trial, const TrialSample& sample, TraceRates& rates,
              std::map<std::string, CauseRate>& causes) {
     const auto& record = sample.record;
     rates.rejected += record.rejected;
+    count_start(trial.starts(), sample, rates.starts);
     switch (sample.verdict) {
       case SampleVerdict::kLost:
       case SampleVerdict::kLostTooOften:
@@ -148,7 +152,8 @@ class Estimator {
     }
     ++rates.runs;
     ++rates.any.count;
-    const Cause cause = cause_of(trace, sample.judgement, scenario_.comparison(), record.outcomes);
+    const Cause cause = cause_of(*trial.plan_of(record).trace, sample.judgement,
+                                 scenario_.comparison(), record.outcomes);
     tell(sample, &cause);
     CauseRate& rate = causes[cause.text];
     if (rate.count++ == 0) {

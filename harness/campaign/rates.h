@@ -21,6 +21,7 @@ struct TraceRates {
   /// known, and intervals allow for either.
   std::int64_t unseen = 0;
   std::int64_t rejected = 0;      // invalid starts that were drawn again
+  StartResult starts;             // the initial states that were simulated
   std::optional<LawResult> law;   // none: starts are uniform
   std::string left_out;           // the part of the start region that is never drawn
   CauseRate any;                  // any discrepancy at all
@@ -65,9 +66,9 @@ struct RatesResult {
   bool is_answered() const;
 };
 
-/// Simulates each trace `runs` times from uniform starts, whatever comes out, and counts what a
-/// campaign would call a discrepancy by its cause. Reports as run_campaign does; a simulator that
-/// is lost too often ends it, with the counts so far and `complete` false.
+/// Simulates each trace `runs` times from starts that are drawn independently, whatever comes out,
+/// and counts what a campaign would call a discrepancy by its cause. Reports as run_campaign does;
+/// a simulator that is lost too often ends it, with the counts so far and `complete` false.
 base::Result<RatesResult> estimate_rates(const Scenario& scenario, TraceFeed& traces,
                                          const SimulatorFactory& make_simulator,
                                          const RatesOptions& options, base::DiagnosticSink& sink);

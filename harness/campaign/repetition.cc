@@ -116,6 +116,7 @@ void apply_repetition(CampaignResult& result) {
     trace.claim = "nothing is claimed: a clean simulation is not clean when it is repeated";
     trace.certified_epsilon = 1.0;
     trace.stated.epsilon = 1.0;
+    trace.shared.epsilon = 1.0;
     trace.verdict = CampaignVerdict::kInconclusive;
   }
 }

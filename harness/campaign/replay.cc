@@ -140,9 +140,12 @@ RecordedRun recorded_run(const JournalText& journal, SampleId id) {
     const auto place = journal.places.at(key);
     return {*journal.header, id, record, line_of(record), place, place};
   }
-  return {*journal.header,         id,
-          journal.samples.at(key), journal.traces.at(id.trace),
-          journal.places.at(key),  journal.trace_places.at(id.trace)};
+  return {*journal.header,
+          id,
+          record,
+          journal.line_of(record),
+          journal.places.at(key),
+          journal.line_place_of(record)};
 }
 
 base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir,

@@ -141,7 +141,8 @@ SampleRow sample_row(const SampleRecord& record, const char* outcome) {
   row.seed = record.seed;
   row.rejected = record.rejected;
   row.retries = record.retries;
-  row.drawn = !record.searched && (!record.path || record.path->target.empty());
+  row.start_state = record.start_state;
+  row.drawn = !record.searched && !record.visit && (!record.path || record.path->target.empty());
   row.outcome = outcome;
   row.reason = record.reason;
   row.start = record.initial;

@@ -87,6 +87,10 @@ struct SampleRecord {
   std::int64_t attempt = 0;  // draws of this sample that were rejected before the one used
   DrawPhase phase = DrawPhase::kCertify;  // kConfirm: the repetition of a discrepancy
   bool searched = false;                  // its start was not drawn, but proposed by a search
+  /// Its initial state was chosen, because no run that counts had tried it.
+  bool visit = false;
+  /// Number of the trace's initial state that it begins in, from 1; 0 where there is one only.
+  std::int64_t start_state = 0;
   std::uint64_t seed = 0;
   SampleStatus status = SampleStatus::kOk;
   std::int64_t rejected = 0;

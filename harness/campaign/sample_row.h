@@ -16,6 +16,7 @@ struct SampleRow {
   std::uint64_t seed = 0;             // handed to the simulator at reset
   std::int64_t rejected = 0;          // invalid starts that were drawn before
   std::int64_t retries = 0;           // attempts that were lost and made again
+  std::int64_t start_state = 0;       // number of the trace's initial state; 0: it has one
   bool drawn = true;                  // else the start was chosen for what it leads to
   const char* outcome = "clean";      // "clean", "admitted", "discrepancy", "unfinished", "lost"
   std::optional<std::int64_t> event;  // after which it left what is predicted; from 0

@@ -343,6 +343,7 @@ std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sampl
   SampleRecord record;
   record.trace = plan.trace->number;
   record.sample = sample;
+  record.start_state = plan.start_state;
   DrawKey key{plan.campaign_seed, plan.trace_key, DrawPhase::kCertify,
               static_cast<std::uint64_t>(sample), 0};
   CallList calls(plan.calls);
@@ -366,6 +367,7 @@ std::optional<SampleRecord> run_chosen(const TracePlan& plan, std::int64_t sampl
   SampleRecord record;
   record.trace = plan.trace->number;
   record.sample = sample;
+  record.start_state = plan.start_state;
   record.searched = true;
   record.initial = std::move(start);
   record.seed = simulator_seed(search_key(plan.campaign_seed, plan.trace_key, sample));
@@ -378,7 +380,9 @@ std::optional<SampleRecord> run_chosen(const TracePlan& plan, std::int64_t sampl
 
 std::optional<SampleRecord> TraceSamples::make(std::int64_t sample, Simulator& simulator,
                                                const std::function<bool()>& abandoned) const {
-  return run_sample(*plan_, sample, simulator, abandoned);
+  auto record = run_sample(*plan_, sample, simulator, abandoned);
+  if (record) record->visit = visits_;
+  return record;
 }
 
 std::optional<SampleRecord> TraceSamples::repeat(const SampleRecord& record, Simulator& simulator,

@@ -28,7 +28,8 @@ struct TracePlan {
   std::uint64_t campaign_seed = 0;
   std::uint64_t trace_key = 0;  // hash of the trace's key
   std::int64_t max_rejected_starts = 100;
-  bool repeats_losses = false;  // see may_repeat_losses
+  bool repeats_losses = false;   // see may_repeat_losses
+  std::int64_t start_state = 0;  // number of its initial state (SampleRecord)
 };
 
 /// May a lost simulation be made again with the same start and seed? Only if that gives the same
@@ -40,7 +41,9 @@ bool may_repeat_losses(const SimulatorInfo& simulator);
 /// The samples of a trace.
 class TraceSamples final : public SampleMaker {
  public:
-  explicit TraceSamples(std::shared_ptr<const TracePlan> plan) : plan_(std::move(plan)) {}
+  /// `visits`: they are made for the sake of their initial state (SampleRecord::visit).
+  explicit TraceSamples(std::shared_ptr<const TracePlan> plan, bool visits = false)
+      : plan_(std::move(plan)), visits_(visits) {}
   std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
                                    const std::function<bool()>& abandoned) const override;
   std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
@@ -48,6 +51,7 @@ class TraceSamples final : public SampleMaker {
 
  private:
   std::shared_ptr<const TracePlan> plan_;
+  bool visits_;
 };
 
 /// Draws sample `sample` and simulates it: reset, observe, then act and observe per event. A failed

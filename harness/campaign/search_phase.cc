@@ -24,13 +24,9 @@ namespace {
 
 class SearchPhase {
  public:
-  SearchPhase(Trial& trial, const SearchSpec& spec, const Scenario& scenario,
+  SearchPhase(Trial& trial, const StartCube& cube, const SearchSpec& spec, const Scenario& scenario,
               const ModelFluents& fluents)
-      : trial_(trial),
-        spec_(spec),
-        scenario_(scenario),
-        fluents_(fluents),
-        cube_(trial.plan().sampler) {
+      : trial_(trial), spec_(spec), scenario_(scenario), fluents_(fluents), cube_(cube) {
     outcome_.result.spec = spec;
   }
 
@@ -43,7 +39,7 @@ class SearchPhase {
       // Always a whole batch: what is proposed must not depend on where the search ends.
       auto points = strategy->propose(history(), kSearchBatch);
       points.resize(static_cast<std::size_t>(count));
-      std::vector<std::optional<State>> starts;
+      std::vector<std::optional<ChosenStart>> starts;
       for (const auto& point : points) starts.push_back(cube_.start_at(point));
       auto tried = trial_.try_starts(next, std::move(starts));
       if (!tried) return sink.already_reported();
@@ -93,7 +89,7 @@ class SearchPhase {
       ++result.lost;
     } else {
       tried.run = scale_.size();
-      scale_.add(margin_parts(*scenario_.mapping, fluents_, *trial_.plan().trace,
+      scale_.add(margin_parts(*scenario_.mapping, fluents_, *trial_.plan_of(sample.record).trace,
                               scenario_.comparison(), sample.record),
                  discrepancy);
     }
@@ -123,7 +119,7 @@ class SearchPhase {
   const SearchSpec& spec_;
   const Scenario& scenario_;
   const ModelFluents& fluents_;
-  UnitCube cube_;
+  const StartCube& cube_;
   MarginScale scale_;
   std::vector<Tried> tried_;
   SearchOutcome outcome_;
@@ -141,7 +137,34 @@ UnitCube::UnitCube(const Sampler& sampler) : sampler_(sampler) {
   }
 }
 
-std::optional<State> UnitCube::start_at(const UnitPoint& point) const {
+base::Result<StartCube> StartCube::make(const StartStates& starts, const Scenario& scenario,
+                                        const ModelFluents& fluents, base::DiagnosticSink& sink) {
+  StartCube out(starts);
+  if (starts.is_single()) {
+    out.cubes_.emplace_back(starts.first().sampler);
+    out.dimensions_ = out.cubes_.front().dimensions();
+    return out;
+  }
+  // Of more states than are listed only the first is searched.
+  for (std::int64_t state = 1; state <= starts.count().value_or(1); ++state) {
+    const auto sampler = start_sampler(scenario, fluents.ground(), starts.holds(state), sink);
+    if (!sampler) return sink.already_reported();
+    out.cubes_.emplace_back(*sampler);
+    out.dimensions_ = std::max(out.dimensions_, 1 + out.cubes_.back().dimensions());
+  }
+  return out;
+}
+
+std::optional<ChosenStart> StartCube::start_at(const UnitPoint& point) const {
+  const std::span<const double> all(point);
+  const auto state = starts_->state_at(all.empty() ? 0.0 : all.front());
+  const auto& cube = cubes_[static_cast<std::size_t>(std::max<std::int64_t>(state, 1) - 1)];
+  auto at = cube.start_at(all.subspan(starts_->is_single() ? 0 : 1));
+  if (!at) return std::nullopt;
+  return ChosenStart{state, *std::move(at)};
+}
+
+std::optional<State> UnitCube::start_at(std::span<const double> point) const {
   std::size_t next = 0;
   if (const auto* law = sampler_.law()) {
     constexpr double kBelowOne = 1.0 - 0x1.0p-53;
@@ -187,7 +210,9 @@ EvaluationKind evaluation_kind(const TrialSample& sample) {
 base::Result<SearchOutcome> search_trace(Trial& trial, const SearchSpec& spec,
                                          const Scenario& scenario, const ModelFluents& fluents,
                                          base::DiagnosticSink& sink) {
-  auto outcome = SearchPhase(trial, spec, scenario, fluents).run(sink);
+  const auto cube = StartCube::make(trial.starts(), scenario, fluents, sink);
+  if (!cube) return sink.already_reported();
+  auto outcome = SearchPhase(trial, *cube, spec, scenario, fluents).run(sink);
   trial.begin_after(spec.runs);
   return outcome;
 }

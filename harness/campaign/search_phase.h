@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "harness/campaign/search_result.h"
@@ -23,15 +24,33 @@ struct SearchOutcome {
 /// likely to be drawn from, before the conditions of a law.
 class UnitCube {
  public:
-  /// `sampler` must outlive it.
   explicit UnitCube(const Sampler& sampler);
   std::size_t dimensions() const { return free_; }
   /// None: a condition of the law refuses the point.
-  std::optional<State> start_at(const UnitPoint& point) const;
+  std::optional<State> start_at(std::span<const double> point) const;
 
  private:
-  const Sampler& sampler_;
+  Sampler sampler_;
   std::size_t free_ = 0;
+};
+
+/// All starts of a trace as one unit cube: where it has several initial states the first coordinate
+/// tells which, in equal parts or by their weights, and the others are those of that state's cube.
+class StartCube {
+ public:
+  /// `starts` outlives it. Reports what start_sampler reports.
+  static base::Result<StartCube> make(const StartStates& starts, const Scenario& scenario,
+                                      const ModelFluents& fluents, base::DiagnosticSink& sink);
+  std::size_t dimensions() const { return dimensions_; }
+  /// None: a condition of the law refuses the point.
+  std::optional<ChosenStart> start_at(const UnitPoint& point) const;
+
+ private:
+  explicit StartCube(const StartStates& starts) : starts_(&starts) {}
+
+  const StartStates* starts_;
+  std::vector<UnitCube> cubes_;  // by state
+  std::size_t dimensions_ = 0;
 };
 
 /// The seed for the random choices in a search of the trace's starts.

@@ -13,6 +13,7 @@
 #include "harness/campaign/run_setup.h"
 #include "harness/campaign/sample_record.h"
 #include "harness/campaign/search_phase.h"
+#include "harness/campaign/start_words.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/regression.h"
 
@@ -32,11 +33,15 @@ class TraceCampaign {
                                 context.bench.fluents().ground(),
                                 as_set(trace().holds(trace().event_count())))),
         spec_(context.scenario.criterion) {
-    set_share(1.0);
+    criterion_ = make_criterion(spec_);
+    max_runs_ = run_limit(context_.scenario).max_runs;
     if (context_.family.is_settled()) (void)share_error();
+    // What the bound of Clopper and Pearson says of failures supposes independent draws.
+    if (criterion_->kind() == CriterionKind::kClopperPearson) trial_.draw_independently();
     auto& result = outcome_.result;
     result.trace = trial_.plan().trace;
     result.start_region = trial_.start().dimensions;
+    trial_.starts().describe(result.starts);
     law_.name(trial_.plan().sampler);
     result.left_out = law_.drawn().left_out;
     result.start_shares =
@@ -52,13 +57,15 @@ class TraceCampaign {
     }
     for (;;) {
       decision_ = criterion_->decide(tally_);
-      // Enough for a trace by itself. It may only ask for more to share the error with others.
-      if ((decision_.stop || tally_.runs() >= max_runs_) && !is_shared_) {
-        if (!share_error()) return finished(TraceEnd::kStopped);
-        decision_ = criterion_->decide(tally_);
+      if ((decision_.stop || tally_.runs() >= max_runs_) && !share_error()) {
+        return finished(TraceEnd::kStopped);
       }
       report_progress();
-      if (decision_.stop) return finished(TraceEnd::kDecided);
+      if (decision_.stop) {
+        const auto end = visit_others();
+        if (!end) return context_.sink.already_reported();
+        return finished(*end);
+      }
       if (tally_.runs() >= max_runs_) return finished(TraceEnd::kRunLimit);
       trial_.submit_to(last_wanted());
       auto sample = trial_.next();
@@ -73,13 +80,8 @@ class TraceCampaign {
  private:
   const CampaignTrace& trace() const { return *trial_.plan().trace; }
 
-  void set_share(double share) {
-    spec_.share = share;
-    criterion_ = make_criterion(spec_);
-    max_runs_ = run_limit(context_.scenario, share).max_runs;
-  }
-
-  /// Finds out what error the trace may spend. False when stopped on the way.
+  /// Finds out what error the trace may spend in a claim that leaves other traces out. False when
+  /// stopped on the way.
   bool share_error() {
     if (is_shared_) return true;
     const auto share = context_.family.share();
@@ -87,11 +89,7 @@ class TraceCampaign {
     if (!share && context_.bench.stopped()) return false;
     is_shared_ = true;
     is_alone_ = !share;
-    set_share(share.value_or(1.0));
-    if (share && !context_.warned_of_limit) {
-      context_.warned_of_limit =
-          warn_of_low_limit(context_.scenario, context_.files, context_.sink, *share);
-    }
+    share_ = share.value_or(1.0);
     return true;
   }
 
@@ -128,16 +126,46 @@ class TraceCampaign {
     return std::optional<TraceEnd>();
   }
 
+  /// Enough was simulated for the claim: the initial states that nothing was seen of are simulated
+  /// once each, where the limit of runs has room for it. These runs count for no claim.
+  base::Result<TraceEnd> visit_others() {
+    const auto left = trial_.starts().others_than(outcome_.result.starts.states);
+    if (std::ssize(left) > max_runs_ - tally_.runs()) return TraceEnd::kDecided;
+    for (const auto state : left) {
+      auto sample = trial_.visit(state);
+      if (!sample || !check_written(context_.journal, context_.options, context_.sink)) {
+        return context_.sink.already_reported();
+      }
+      if (!*sample) return TraceEnd::kStopped;
+      ++outcome_.result.starts.visits;
+      const auto end = consume(**std::move(sample));
+      if (end) return *end;
+    }
+    return TraceEnd::kDecided;
+  }
+
+  /// A run whose final state was that of its trace.
+  void add_clean(const SampleRecord& record) {
+    // The paper's regression is about one initial state.
+    if (trial_.starts().is_single()) {
+      add_clean_run(tally_, record.initial, record.observations.back());
+    } else {
+      tally_.add_clean_of_many();
+    }
+  }
+
   /// Takes in one sample. Returns the end that it causes, if any.
   std::optional<TraceEnd> consume(TrialSample sample) {
     auto& result = outcome_.result;
     tally_.add_rejected(sample.record.rejected);
-    const auto& plan = trial_.plan();
+    const auto& plan = trial_.plan_of(sample.record);
+    const bool counts = !sample.record.visit;
     law_.add(plan.sampler, plan.campaign_seed, plan.trace_key, sample.record);
     result.rejected += sample.record.rejected;
     const bool is_lost =
         sample.verdict == SampleVerdict::kLost || sample.verdict == SampleVerdict::kLostTooOften;
     if (!is_lost && sample.record.retries > 0) ++result.retried;
+    count_start(trial_.starts(), sample, result.starts);
     using Kept = RunRecorder::Verdict;
     context_.recorder.judge(sample.record, is_lost ? Kept::kNothing
                                            : sample.verdict == SampleVerdict::kDiscrepancy
@@ -146,19 +174,20 @@ class TraceCampaign {
     switch (sample.verdict) {
       case SampleVerdict::kLost:
       case SampleVerdict::kLostTooOften:
-        tally_.add_lost();
+        if (counts) tally_.add_lost();
         count_loss(sample.record, result);
+        trial_.draw_independently();
         break;
       case SampleVerdict::kDiscrepancy:
         return accept_discrepancy(std::move(sample));
       case SampleVerdict::kAsPredicted:
         if (sample.judgement.first_divergence) ++result.strayed;
-        add_clean_run(tally_, sample.record.initial, sample.record.observations.back());
+        if (counts) add_clean(sample.record);
         note_failures(sample.record);
         ++result.clean;
         break;
       case SampleVerdict::kAdmitted:
-        tally_.add_clean_elsewhere();
+        if (counts) tally_.add_clean_elsewhere();
         note_failures(sample.record);
         ++result.admitted;
         ++result.clean;
@@ -180,7 +209,7 @@ class TraceCampaign {
   /// Actions that failed in a clean run though the model does not let them.
   void note_failures(const SampleRecord& record) {
     for (std::size_t i = 0; i < record.outcomes.size(); ++i) {
-      const auto& point = trace().points[i];
+      const auto& point = trial_.plan_of(record).trace->points[i];
       const bool may_fail = point.plan_step && !point.succeeded;
       if (may_fail || record.outcomes[i].status == SimStatus::kOk) continue;
       auto& noted = failures_[i];
@@ -203,7 +232,8 @@ class TraceCampaign {
     found.first = judgement.first;
     found.fluents = judgement.last;
     if (judgement.last.empty()) found.kind = DiscrepancyKind::kTransient;
-    found.cause = cause_of(trace(), judgement, context_.scenario.comparison(), record.outcomes);
+    found.cause = cause_of(*trial_.plan_of(record).trace, judgement, context_.scenario.comparison(),
+                           record.outcomes);
     found.confirmation = confirmation_of(record, *again);
     tell(sample, &found.cause);
     found.record = record;
@@ -235,24 +265,32 @@ class TraceCampaign {
     if (!is_shared_ && end == TraceEnd::kStopped) is_alone_ = true;
     auto& result = outcome_.result;
     outcome_.end = end;
-    result.verdict = end == TraceEnd::kDecided       ? CampaignVerdict::kNoDiscrepancy
-                     : end == TraceEnd::kDiscrepancy ? CampaignVerdict::kDiscrepancy
-                                                     : CampaignVerdict::kInconclusive;
+    result.is_decided = end == TraceEnd::kDecided;
+    trial_.starts().describe(result.starts);
+    const bool is_covered = result.starts.is_covered();
+    result.verdict = end == TraceEnd::kDecided && is_covered ? CampaignVerdict::kNoDiscrepancy
+                     : end == TraceEnd::kDiscrepancy         ? CampaignVerdict::kDiscrepancy
+                                                             : CampaignVerdict::kInconclusive;
     result.simulations = tally_.runs();
     const auto bound = certified_bound(tally_, spec_.confidence_level, spec_.share);
     result.certified_level = bound.confidence_level;
     result.certified_epsilon = bound.epsilon;
-    result.error_share = spec_.share;
     result.stated = stated_bound(tally_, spec_);
-    result.paper_stopped_at = paper_stopped_at(tally_, spec_.paper, spec_.confidence_level);
-    result.paper_variant = paper_variant(tally_, spec_.paper);
+    auto shared = spec_;
+    shared.share = share_;
+    result.shared = stated_bound(tally_, shared);
+    if (trial_.starts().is_single()) {
+      result.paper_stopped_at = paper_stopped_at(tally_, spec_.paper, spec_.confidence_level);
+      result.paper_variant = paper_variant(tally_, spec_.paper);
+    }
     result.not_covered = tally_.frame().not_covered;
     result.law = law_.result();
     if (result.search && result.search->found) {
       result.claim =
           "a search found a discrepancy; nothing is claimed about how often there is one";
     } else {
-      result.claim = claim(tally_, spec_, context_.scenario.comparison(), law_.drawn());
+      result.claim =
+          claim(tally_, spec_, context_.scenario.comparison(), drawn_starts(result, law_.drawn()));
       result.caveats = caveats(tally_, spec_, result.paper_stopped_at);
     }
     if (result.search) add_search_caveats(*result.search, result);
@@ -298,11 +336,7 @@ class TraceCampaign {
                                      "model admits them");
     }
     if (context_.scenario.comparison() == Comparison::kEveryStep) add_rest_caveat(result);
-    if (trace().other_initial_states == base::Known::kYes) {
-      result.caveats.push_back(
-          "other initial states lead to the same events; only the first, in the model's order, was "
-          "sampled (`run --split-initial` samples each)");
-    }
+    add_start_caveats(result.starts, max_runs_, result.caveats);
     if (is_alone_) {
       result.caveats.push_back(
           "the claim is about this trace by itself: how many there are was not known when it "
@@ -338,9 +372,10 @@ class TraceCampaign {
   std::map<std::size_t, Failures> failures_;  // in clean runs, by event
   Tally tally_;
   LawCounter law_;
-  CriterionSpec spec_;  // with the share of the error that the trace may spend
+  CriterionSpec spec_;
   std::unique_ptr<ConfidenceCriterion> criterion_;
   std::int64_t max_runs_ = 0;
+  double share_ = 1.0;      // of the error, in a claim that leaves other traces out
   bool is_shared_ = false;  // the share is known
   bool is_alone_ = false;   // it is not, and the trace is claimed by itself
   Decision decision_;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,19 @@ class ModelFluents {
   std::vector<compiler::FluentId> ids_;  // likewise
 };
 
+/// The initial states of the model that lead to a trace's events and returned objects.
+struct TraceStarts {
+  /// Each as its true ones of the fluents that were asked for, ascending; the trace's own first.
+  std::vector<std::vector<compiler::FluentId>> states;
+  /// There are more than are listed, and `parts` says what they are among.
+  bool more = false;
+  /// Groups of fluents with the values that each group can have. Every initial state is one value
+  /// of each group, but not each such combination is one.
+  std::vector<std::vector<std::vector<compiler::FluentId>>> parts;
+  /// Weights of the states in a draw, none of which is 0. Empty: each is equally likely.
+  std::vector<double> weights;
+};
+
 /// A source of traces: an enumeration, a file, a list in a test.
 class TraceFeed {
  public:
@@ -63,6 +77,25 @@ class TraceFeed {
   virtual std::vector<std::string> bounds() const { return {}; }
   /// The ground fluents and events of the model, for all its traces.
   virtual runtime::Symbols symbols() const = 0;
+  /// The initial states that lead to the events of `trace`, which was given, as far as these
+  /// fluents tell them apart. None: stopped. A feed that cannot tell knows the trace's own only.
+  virtual base::Result<std::optional<TraceStarts>> starts(
+      const CampaignTrace& trace, std::span<const compiler::FluentId> fluents) {
+    TraceStarts own;
+    auto& state = own.states.emplace_back();
+    for (const auto fluent : fluents) {
+      if (runtime::contains(trace.points.front().holds, fluent)) state.push_back(fluent);
+    }
+    return std::optional(std::move(own));
+  }
+  /// The trace with the events of `trace` from another initial state, given as its true ones of
+  /// `fluents`. None: the model has none; kUndecided: stopped.
+  virtual base::Result<std::pair<base::Known, std::optional<CampaignTrace>>> from(
+      const CampaignTrace& trace, std::span<const compiler::FluentId> fluents,
+      const std::vector<compiler::FluentId>& state) {
+    (void)trace, (void)fluents, (void)state;
+    return std::pair(base::Known::kNo, std::optional<CampaignTrace>());
+  }
   /// Does the model let the events of `trace`, from its initial state, lead through states in which
   /// each of these fluents, by timepoint, has this value? Asked about a trace that was given,
   /// though others may have been given since, and only if it has `other_outcomes`. Undecided where

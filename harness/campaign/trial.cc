@@ -160,32 +160,61 @@ SampleRow judged_row(const TrialSample& sample, Comparison comparison, const Cau
 base::Result<Trial> Trial::prepare(TrialBench& bench, CampaignTrace trace) {
   PARALLAX_REQUIRE(trace.points.size() == trace.event_count() + 1,
                    "a trace has one state more than it has events");
-  const auto& scenario = bench.scenario_;
-  auto parts =
-      prepare_trace(scenario, bench.fluents_.ground(), bench.simulator_, trace, bench.sink_);
-  if (!parts) return bench.sink_.already_reported();
-  const auto key = base::fnv1a64(trace.key);
-  auto plan = std::make_shared<const TracePlan>(
-      TracePlan{std::make_shared<const CampaignTrace>(std::move(trace)), std::move(parts->calls),
-                std::move(parts->sampler), bench.options_.seed, key,
-                scenario.limits.max_rejected_starts, may_repeat_losses(bench.simulator_)});
-  return Trial(bench, std::move(plan), std::move(parts->start));
+  auto starts = StartStates::make({bench.scenario_, bench.fluents_, bench.simulator_, bench.feed_,
+                                   bench.sink_, bench.options_.seed},
+                                  std::move(trace));
+  if (!starts) return bench.sink_.already_reported();
+  return Trial(bench, *std::move(starts));
 }
 
-void Trial::submit_to(std::int64_t last) {
+/// The start in a state, which is announced. None: stopped.
+base::Result<std::optional<PreparedStart>> Trial::begin_in(std::int64_t state) {
+  auto start = starts_.prepared(state);
+  if (!start) return bench_->sink_.already_reported();
+  const bool is_new = *start && state > 1 && announced_.insert(state).second;
+  if (is_new && announce_ && !announce_(*(*start)->plan)) return bench_->sink_.already_reported();
+  return start;
+}
+
+/// The start of a drawn sample. None: stopped.
+base::Result<std::optional<PreparedStart>> Trial::begin_of(std::int64_t sample) {
+  const auto state = starts_.state_of(sample, independent_);
+  if (!state) return bench_->sink_.already_reported();
+  if (!*state) return std::optional<PreparedStart>();
+  return begin_in(**state);
+}
+
+/// False when stopped.
+base::Result<bool> Trial::submit_up_to(std::int64_t last) {
   while (submitted_ < last) {
-    if (recorded(++submitted_, DrawPhase::kCertify) == nullptr) {
-      bench_->pool_.submit(samples_, submitted_);
-    }
+    auto start = begin_of(submitted_ + 1);
+    if (!start) return bench_->sink_.already_reported();
+    if (!*start) return false;
+    const auto* known = recorded(++submitted_, DrawPhase::kCertify);
+    // One that ran ahead of a loss, after which states are drawn otherwise, is made anew.
+    if (known != nullptr && known->start_state == (*start)->state) continue;
+    bench_->pool_.submit((*start)->samples, submitted_);
   }
+  return true;
+}
+
+void Trial::submit_to(std::int64_t last) { failed_ = !submit_up_to(last) || failed_; }
+
+void Trial::draw_independently() {
+  if (independent_ || starts_.is_single()) return;
+  bench_->pool_.abandon();
+  submitted_ = next_ - 1;
+  independent_ = true;
 }
 
 const SampleRecord* Trial::recorded(std::int64_t sample, DrawPhase phase) const {
-  return journal_ == nullptr ? nullptr : journal_->find(plan_->trace->number, sample, phase);
+  return journal_ == nullptr ? nullptr : journal_->find(plan().trace->number, sample, phase);
 }
 
-std::optional<SampleRecord> Trial::result_of(std::int64_t sample, DrawPhase phase) {
-  if (const auto* known = recorded(sample, phase)) {
+std::optional<SampleRecord> Trial::result_of(std::int64_t sample, DrawPhase phase,
+                                             std::int64_t state) {
+  const auto* known = recorded(sample, phase);
+  if (known != nullptr && known->start_state == state) {
     if (bench_->stopped()) return std::nullopt;
     return *known;
   }
@@ -194,37 +223,58 @@ std::optional<SampleRecord> Trial::result_of(std::int64_t sample, DrawPhase phas
 
 base::Result<std::optional<TrialSample>> Trial::next() {
   submit_to(next_);
-  auto record = result_of(next_, DrawPhase::kCertify);
+  if (failed_) return bench_->sink_.already_reported();
+  if (submitted_ < next_) return std::optional<TrialSample>();
+  const auto state = starts_.state_of(next_, independent_);
+  if (!state) return bench_->sink_.already_reported();
+  if (!*state) return std::optional<TrialSample>();
+  auto record = result_of(next_, DrawPhase::kCertify, **state);
   if (!record) return std::optional<TrialSample>();
   ++next_;
-  const auto& scenario = bench_->scenario_;
-  switch (record->status) {
+  return judged(*std::move(record));
+}
+
+base::Result<std::optional<TrialSample>> Trial::visit(std::int64_t state) {
+  bench_->pool_.abandon();
+  auto start = begin_in(state);
+  if (!start) return bench_->sink_.already_reported();
+  if (!*start) return std::optional<TrialSample>();
+  const auto* known = recorded(next_, DrawPhase::kCertify);
+  if (known == nullptr || known->start_state != state || !known->visit) {
+    bench_->pool_.submit(std::make_shared<const TraceSamples>((*start)->plan, true), next_);
+  }
+  auto record = result_of(next_, DrawPhase::kCertify, state);
+  if (!record) return std::optional<TrialSample>();
+  submitted_ = next_++;
+  return judged(*std::move(record));
+}
+
+base::Result<std::optional<TrialSample>> Trial::judged(SampleRecord record) {
+  switch (record.status) {
     case SampleStatus::kRejected:
-      return report_rejected(scenario, *plan_->trace, record->rejected, record->sample,
-                             record->reason, bench_->sink_);
+      return report_rejected(bench_->scenario_, *plan_of(record).trace, record.rejected,
+                             record.sample, record.reason, bench_->sink_);
     case SampleStatus::kRefused:
-      return report_refused(*record);
+      return report_refused(record);
     case SampleStatus::kLost:
-      return std::optional(lost(*std::move(record)));
+      return std::optional(lost(std::move(record)));
     case SampleStatus::kOk:
       break;
   }
-  return observed(*std::move(record));
+  return observed(std::move(record));
 }
 
 namespace {
 
-/// Simulates starts that are given.
-class ChosenSamples final : public SampleMaker {
+/// Simulates a start that is given.
+class ChosenSample final : public SampleMaker {
  public:
-  ChosenSamples(std::shared_ptr<const TracePlan> plan, std::int64_t first,
-                std::vector<State> starts)
-      : plan_(std::move(plan)), first_(first), starts_(std::move(starts)) {}
+  ChosenSample(std::shared_ptr<const TracePlan> plan, State start)
+      : plan_(std::move(plan)), start_(std::move(start)) {}
 
   std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
                                    const std::function<bool()>& abandoned) const override {
-    const auto& start = starts_[static_cast<std::size_t>(sample - first_)];
-    return run_chosen(*plan_, sample, start, simulator, abandoned);
+    return run_chosen(*plan_, sample, start_, simulator, abandoned);
   }
   std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
                                      const std::function<bool()>& abandoned) const override {
@@ -233,24 +283,26 @@ class ChosenSamples final : public SampleMaker {
 
  private:
   std::shared_ptr<const TracePlan> plan_;
-  std::int64_t first_;
-  std::vector<State> starts_;
+  State start_;
 };
 
 }  // namespace
 
 base::Result<std::optional<std::vector<TrialSample>>> Trial::try_starts(
-    std::int64_t first, std::vector<std::optional<State>> starts) {
-  std::vector<State> states;
-  for (const auto& start : starts) states.push_back(start.value_or(State()));
-  const auto chosen = std::make_shared<const ChosenSamples>(plan_, first, std::move(states));
+    std::int64_t first, std::vector<std::optional<ChosenStart>> starts) {
   for (std::size_t i = 0; i < starts.size(); ++i) {
     if (!starts[i]) continue;
+    const auto start = begin_in(starts[i]->state);
+    if (!start) return bench_->sink_.already_reported();
+    if (!*start) return std::optional<std::vector<TrialSample>>();
     const auto number = first + static_cast<std::int64_t>(i);
     const auto* known = recorded(number, DrawPhase::kCertify);
     if (known == nullptr) {
-      bench_->pool_.submit(chosen, number);
-    } else if (!known->searched || known->initial != *starts[i]) {
+      bench_->pool_.submit(
+          std::make_shared<const ChosenSample>((*start)->plan, std::move(starts[i]->point)),
+          number);
+    } else if (!known->searched || known->initial != starts[i]->point ||
+               known->start_state != starts[i]->state) {
       return bench_->sink_.error(
           codes::kForeignJournalLine,
           journal_->recorded().places.at({known->trace, number, DrawPhase::kCertify}),
@@ -261,15 +313,17 @@ base::Result<std::optional<std::vector<TrialSample>>> Trial::try_starts(
   for (std::size_t i = 0; i < starts.size(); ++i) {
     if (!starts[i]) {
       TrialSample none;
-      none.record.trace = plan_->trace->number;
+      none.record.trace = plan().trace->number;
       none.record.sample = first + static_cast<std::int64_t>(i);
       none.record.searched = true;
       none.record.status = SampleStatus::kRejected;
+      none.record.start_state = starts_.is_single() ? 0 : 1;
       none.verdict = SampleVerdict::kLost;
       out.push_back(std::move(none));
       continue;
     }
-    auto record = result_of(first + static_cast<std::int64_t>(i), DrawPhase::kCertify);
+    auto record =
+        result_of(first + static_cast<std::int64_t>(i), DrawPhase::kCertify, starts[i]->state);
     if (!record) return std::optional<std::vector<TrialSample>>();
     if (record->status == SampleStatus::kRefused) return report_refused(*record);
     if (record->status == SampleStatus::kRejected) {
@@ -294,6 +348,7 @@ void Trial::begin_after(std::int64_t sample) {
   PARALLAX_REQUIRE(next_ == 1, "nothing was drawn yet");
   next_ = sample + 1;
   submitted_ = sample;
+  starts_.begin_after(sample);
 }
 
 TrialSample Trial::lost(SampleRecord record) {
@@ -333,7 +388,8 @@ base::Known admitted_by_model(const Scenario& scenario, TraceFeed& feed, const C
 base::Result<std::optional<TrialSample>> Trial::observed(SampleRecord record) {
   const auto& scenario = bench_->scenario_;
   TrialSample sample;
-  sample.judgement = judge(*scenario.mapping, bench_->fluents_, *plan_->trace, record.observations);
+  const auto& trace = *plan_of(record).trace;
+  sample.judgement = judge(*scenario.mapping, bench_->fluents_, trace, record.observations);
   const auto& judgement = sample.judgement;
   if (!judgement.missing.empty()) {
     return report_missing(record, *judgement.missing.begin());
@@ -346,7 +402,7 @@ base::Result<std::optional<TrialSample>> Trial::observed(SampleRecord record) {
   sample.verdict = SampleVerdict::kAsPredicted;
   const auto comparison = scenario.comparison();
   if (!judgement.matches(comparison)) {
-    const auto admitted = admitted_by_model(scenario, bench_->feed_, *plan_->trace, judgement);
+    const auto admitted = admitted_by_model(scenario, bench_->feed_, trace, judgement);
     if (admitted == base::Known::kUndecided || bench_->stopped()) {
       return std::optional<TrialSample>();
     }
@@ -365,7 +421,7 @@ base::DiagnosticBuilder Trial::report_refused(const SampleRecord& record) const 
     return bench_->sink_.error(code, scenario.sampling_source,
                                fmt::format("refused the start {}", in), record.reason);
   }
-  const auto event = ground_fluent(plan_->trace->event(record.outcomes.size()));
+  const auto event = ground_fluent(plan().trace->event(record.outcomes.size()));
   const auto action =
       std::find_if(scenario.actions.begin(), scenario.actions.end(),
                    [&](const auto& binding) { return binding.event == event.symbol; });
@@ -403,7 +459,8 @@ base::DiagnosticBuilder Trial::report_missing(const SampleRecord& record,
 }
 
 CleanSample Trial::clean_sample(const SampleRecord& record) const {
-  const auto is_clean = [bench = bench_, plan = plan_](const SampleRecord& again) {
+  const auto& start = starts_.known(record.start_state);
+  const auto is_clean = [bench = bench_, plan = start.plan](const SampleRecord& again) {
     const auto& scenario = bench->scenario_;
     const auto judgement =
         judge(*scenario.mapping, bench->fluents_, *plan->trace, again.observations);
@@ -413,16 +470,17 @@ CleanSample Trial::clean_sample(const SampleRecord& record) const {
     if (admitted == base::Known::kUndecided || bench->stopped()) return std::optional<bool>();
     return std::optional(admitted == base::Known::kYes);
   };
-  return {record, samples_, is_clean};
+  return {record, start.samples, is_clean};
 }
 
 std::optional<SampleRecord> Trial::repeat(const SampleRecord& record) {
-  if (recorded(record.sample, DrawPhase::kConfirm) == nullptr) {
+  const auto* known = recorded(record.sample, DrawPhase::kConfirm);
+  if (known == nullptr || known->start_state != record.start_state) {
     bench_->pool_.abandon();  // nothing that ran ahead is needed any more
     submitted_ = record.sample;
-    bench_->pool_.submit_repeat(samples_, record);
+    bench_->pool_.submit_repeat(starts_.known(record.start_state).samples, record);
   }
-  return result_of(record.sample, DrawPhase::kConfirm);
+  return result_of(record.sample, DrawPhase::kConfirm, record.start_state);
 }
 
 }  // namespace parallax::harness

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
@@ -12,6 +13,7 @@
 #include "harness/campaign/repetition.h"
 #include "harness/campaign/sample_row.h"
 #include "harness/campaign/sample_runner.h"
+#include "harness/campaign/start_states.h"
 #include "harness/campaign/trace_input.h"
 #include "harness/campaign/worker_pool.h"
 #include "harness/config/scenario.h"
@@ -99,6 +101,12 @@ class SimulatorBench {
   WorkerPool pool_;
 };
 
+/// A start that was chosen: an initial state of the trace, by number, and a point in its region.
+struct ChosenStart {
+  std::int64_t state = 0;
+  State point;
+};
+
 /// The same for trials of traces.
 class TrialBench : public SimulatorBench {
  public:
@@ -157,10 +165,26 @@ class Trial {
   /// being simulated.
   void continue_from(const Journal& journal) { journal_ = &journal; }
 
-  const TracePlan& plan() const { return *plan_; }
-  /// The continuous states that the trace's initial state stands for.
-  const StartCuboid& start() const { return start_; }
+  /// The trace from the first of its initial states.
+  /// `announce` is called before the first sample from each further initial state; what it reports
+  /// ends the trial.
+  void announce_by(std::function<base::Status(const TracePlan&)> announce) {
+    announce_ = std::move(announce);
+  }
+
+  const TracePlan& plan() const { return starts_.first(); }
+  /// The trace from the initial state of a sample.
+  const TracePlan& plan_of(const SampleRecord& record) const {
+    return *starts_.known(record.start_state).plan;
+  }
+  /// The continuous states that the first initial state stands for.
+  const StartCuboid& start() const { return plan().sampler.cuboid(); }
+  StartStates& starts() { return starts_; }
+  const StartStates& starts() const { return starts_; }
   std::int64_t next_sample() const { return next_; }  // from 1
+  /// From now on the initial state of each sample is drawn by itself (StartStates::state_of). What
+  /// ran ahead is forgotten.
+  void draw_independently();
 
   /// Lets the workers simulate all samples up to this one.
   void submit_to(std::int64_t last);
@@ -169,13 +193,15 @@ class Trial {
   /// initial state than it was put into (kStartNotTaken of an external one, else
   /// kMappingNotInverse), and for starts that are always invalid (kStartsRejected).
   base::Result<std::optional<TrialSample>> next();
+  /// The same from an initial state that is chosen; what ran ahead is forgotten.
+  base::Result<std::optional<TrialSample>> visit(std::int64_t state);
   /// Simulates chosen starts, as the samples from number `first` on. They are not draws, and no
   /// claim rests on them. A start that is invalid or missing has the status kRejected and the
   /// verdict kLost. The last one is kLostTooOften where the rest was not simulated for it. None
   /// when stopped; reports what `next` reports, and kForeignJournalLine where the journal has
   /// another start under the number.
   base::Result<std::optional<std::vector<TrialSample>>> try_starts(
-      std::int64_t first, std::vector<std::optional<State>> starts);
+      std::int64_t first, std::vector<std::optional<ChosenStart>> starts);
   /// The samples up to this number were chosen ones: draws come after them.
   void begin_after(std::int64_t sample);
   /// Simulates the start and seed of `record` once more. None when stopped.
@@ -186,14 +212,15 @@ class Trial {
   void end() { bench_->pool_.abandon(); }
 
  private:
-  Trial(TrialBench& bench, std::shared_ptr<const TracePlan> plan, StartCuboid start)
-      : bench_(&bench),
-        plan_(std::move(plan)),
-        samples_(std::make_shared<const TraceSamples>(plan_)),
-        start_(std::move(start)) {}
+  Trial(TrialBench& bench, StartStates starts) : bench_(&bench), starts_(std::move(starts)) {}
+
+  base::Result<std::optional<PreparedStart>> begin_in(std::int64_t state);
+  base::Result<std::optional<PreparedStart>> begin_of(std::int64_t sample);
+  base::Result<bool> submit_up_to(std::int64_t last);
+  base::Result<std::optional<TrialSample>> judged(SampleRecord record);
 
   const SampleRecord* recorded(std::int64_t sample, DrawPhase phase) const;
-  std::optional<SampleRecord> result_of(std::int64_t sample, DrawPhase phase);
+  std::optional<SampleRecord> result_of(std::int64_t sample, DrawPhase phase, std::int64_t state);
   TrialSample lost(SampleRecord record);
   base::Result<std::optional<TrialSample>> observed(SampleRecord record);
   base::DiagnosticBuilder report_refused(const SampleRecord& record) const;
@@ -202,9 +229,11 @@ class Trial {
 
   TrialBench* bench_;
   const Journal* journal_ = nullptr;
-  std::shared_ptr<const TracePlan> plan_;
-  std::shared_ptr<const SampleMaker> samples_;
-  StartCuboid start_;
+  StartStates starts_;
+  std::function<base::Status(const TracePlan&)> announce_;
+  std::set<std::int64_t> announced_;  // numbers of initial states
+  bool independent_ = false;
+  bool failed_ = false;         // a start could not be prepared, which was reported
   std::int64_t next_ = 1;       // the sample that `next` waits for
   std::int64_t submitted_ = 0;  // the last one that the workers were given or the journal has
 };

@@ -35,6 +35,19 @@ constexpr std::string_view to_string(Starts starts) {
   return kStartsWords[static_cast<std::size_t>(starts)];
 }
 
+/// The initial states that the simulations of a trace begin in: all that lead to its events, each
+/// equally likely or by weights; or only the first in the model's order.
+enum class Initial : std::uint8_t { kAll, kWeights, kFirst };
+inline constexpr std::array<std::string_view, 3> kInitialWords = {"all", "weights", "first"};
+constexpr std::string_view to_string(Initial initial) {
+  return kInitialWords[static_cast<std::size_t>(initial)];
+}
+
+/// The law of the initial states in records: "uniform", "weights", "first".
+constexpr std::string_view law_word(Initial initial) {
+  return initial == Initial::kAll ? "uniform" : to_string(initial);
+}
+
 /// The comparison of the fluents of one symbol.
 struct ComparedFluents {
   enum class How : std::uint8_t { kEveryStep, kAtTheEnd, kAtTheStart, kIgnored };

@@ -200,7 +200,7 @@ namespace {
 
 /// `what` gives a discrepancy with a small probability, or what else can be said.
 std::string claim_about(const Tally& tally, const CriterionSpec& spec, std::string_view what,
-                        std::string_view does) {
+                        std::string_view does, const DrawnStates& states = {}) {
   if (tally.mismatch() > 0) {
     return fmt::format("{} of {} gave a discrepancy", tally.mismatch(),
                        base::counted(tally.runs(), "run", "runs"));
@@ -211,10 +211,10 @@ std::string claim_about(const Tally& tally, const CriterionSpec& spec, std::stri
   }
   // Runs that were planned for an epsilon support that one; the bound itself is a little smaller.
   const bool as_planned = spec.kind != CriterionKind::kPaper && bound.epsilon <= spec.epsilon;
-  return fmt::format("with {} confidence, fewer than {} of {} {} ({}){}",
-                     level_text(bound.confidence_level),
-                     percent_up(as_planned ? spec.epsilon : bound.epsilon), what, does,
-                     runs_text(tally), kSupposition);
+  const double epsilon = as_planned ? spec.epsilon : bound.epsilon;
+  return fmt::format("with {} confidence, fewer than {} of {} {}{} ({}){}",
+                     level_text(bound.confidence_level), percent_up(epsilon), what, does,
+                     single_state_text(states, epsilon), runs_text(tally), kSupposition);
 }
 
 std::string_view when(Comparison comparison) {
@@ -230,12 +230,40 @@ std::string drawn_from(std::string_view region, const DrawnStarts& drawn) {
   return fmt::format("drawn from {} by the scenario's law ({})", from, drawn.law);
 }
 
+std::string single_state_text(const DrawnStates& states, double epsilon) {
+  if (states.law != Initial::kAll || !states.all || *states.all <= 1) return {};
+  const double single = epsilon * static_cast<double>(*states.all);
+  if (single >= 1.0) return {};
+  return fmt::format("; in each single initial state fewer than {}", percent_up(single));
+}
+
+std::string starts_text(std::string_view region, const DrawnStarts& drawn, bool valid) {
+  const std::string_view only_valid = valid ? "valid " : "";
+  const auto& [law, all, tried] = drawn.initial;
+  if (all == 1) return fmt::format("{}start states {}", only_valid, drawn_from(region, drawn));
+  const auto number = all ? std::to_string(*all) : std::string("unlisted");
+  if (law == Initial::kFirst) {
+    return fmt::format(
+        "{}start states {}", only_valid,
+        drawn_from(fmt::format("{} of the first of its {} initial states", region, number), drawn));
+  }
+  const auto each = all && tried >= *all
+                        ? std::string("each tried")
+                        : fmt::format("{} tried", all ? fmt::format("{} of {}", tried, *all)
+                                                      : std::to_string(tried));
+  return fmt::format(
+      "{}starts (one of the {} initial states that lead to its events, {} and {}; "
+      "then {})",
+      only_valid, number,
+      law == Initial::kWeights ? "each as likely as its weight in `start_weights`"
+                               : "each equally likely",
+      each, drawn_from("its region", drawn));
+}
+
 std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,
                   const DrawnStarts& drawn) {
-  return claim_about(tally, spec,
-                     fmt::format("{}start states {}", tally.rejected() > 0 ? "valid " : "",
-                                 drawn_from("the start region", drawn)),
-                     fmt::format("give a discrepancy {}", when(comparison)));
+  return claim_about(tally, spec, starts_text("the start region", drawn, tally.rejected() > 0),
+                     fmt::format("give a discrepancy {}", when(comparison)), drawn.initial);
 }
 
 std::string loop_claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,

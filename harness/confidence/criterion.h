@@ -103,11 +103,23 @@ CertifiedBound certified_bound(const Tally& tally, double confidence_level, doub
 /// bound.
 CertifiedBound stated_bound(const Tally& tally, const CriterionSpec& spec);
 
+/// The initial states of the model that starts begin in.
+struct DrawnStates {
+  Initial law = Initial::kAll;
+  std::optional<std::int64_t> all = 1;  // none: more than can be listed
+  std::int64_t tried = 1;
+};
+
 /// The law by which starts are drawn, in words.
 struct DrawnStarts {
+  DrawnStarts() = default;
+  DrawnStarts(std::string the_law, std::string the_rest)
+      : law(std::move(the_law)), left_out(std::move(the_rest)) {}
+
   std::string law{};  // where they are not drawn uniformly
   /// The part of the region that is never drawn: "its rim (`inset_m`: 0.05)". Empty: none.
   std::string left_out{};
+  DrawnStates initial{};
 };
 
 /// Exactly what the runs of one trace support, as one sentence without a full stop: "with 99 %
@@ -116,6 +128,13 @@ struct DrawnStarts {
 /// up, so never beyond the evidence.
 std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,
                   const DrawnStarts& drawn = {});
+/// "start states drawn uniformly from the start region", or "starts (one of the 6 initial states
+/// that lead to its events, each equally likely and each tried; then drawn uniformly from its
+/// region)". `valid`: only of valid ones.
+std::string starts_text(std::string_view region, const DrawnStarts& drawn, bool valid);
+/// "; in each single initial state fewer than 30 %", where `epsilon` bounds the mean of them;
+/// empty where nothing follows for a single one.
+std::string single_state_text(const DrawnStates& states, double epsilon);
 /// "drawn uniformly from the start region", or the law and the drawn part of the region.
 std::string drawn_from(std::string_view region, const DrawnStarts& drawn);
 /// The supposition of every claim about how often runs go wrong, which ends its sentence.

@@ -13,24 +13,15 @@
 namespace parallax::harness {
 namespace {
 
-CriterionSpec with_share(CriterionSpec spec, double share) {
-  spec.share = share;
-  return spec;
-}
-
-/// "112 clean runs of each of 3 traces", "100 clean runs of the first trace, 127 ..."
+/// "90 clean runs of each of 3 traces"
 std::string runs_by_trace(const CriterionSpec& spec, const std::optional<SpendingRule>& rule,
                           std::string_view runs) {
-  const auto of = [&](std::int64_t k) {
-    return planned_runs(with_share(spec, rule ? rule->share(k) : 1.0));
-  };
-  if (!rule || rule->traces() == 1) return fmt::format("{} {}", of(1), runs);
-  if (rule->traces())
-    return fmt::format("{} {} of each of {} traces", of(1), runs, *rule->traces());
-  return fmt::format(
-      "{} {} of the first trace, {} of the second, {} of the third and more of later "
-      "ones",
-      of(1), runs, of(2), of(3));
+  auto whole = spec;
+  whole.share = 1.0;
+  const auto needed = fmt::format("{} {}", planned_runs(whole), runs);
+  if (!rule || rule->traces() == 1) return needed;
+  if (rule->traces()) return fmt::format("{} of each of {} traces", needed, *rule->traces());
+  return needed + " of each trace";
 }
 
 }  // namespace
@@ -43,19 +34,26 @@ double SpendingRule::share(std::int64_t k) const {
 }
 
 std::string SpendingRule::text() const {
-  if (!traces_) return "6/(pi^2 k^2) of the error for trace k, as their number is not known";
+  if (!traces_) {
+    return "the whole error where each trace passes, else 6/(pi^2 k^2) of it for trace k";
+  }
   if (*traces_ == 1) return "the whole error for the only trace";
-  return fmt::format("1/{} of the error for each of {} traces", *traces_, *traces_);
+  return fmt::format("the whole error where each of {} traces passes, else 1/{} of it for each",
+                     *traces_, *traces_);
 }
 
 std::string family_claim(std::span<const FamilyMember> members, const CriterionSpec& spec,
                          Comparison comparison, const FamilyScope& scope) {
-  std::int64_t clean = 0, lost = 0, runs = 0, claimed = 0, first_start = 0;
+  std::int64_t clean = 0, lost = 0, runs = 0, claimed = 0;
   bool rejected = false;
   const std::string* law = nullptr;
   bool one_law = true;
   DrawnStarts drawn;
   CertifiedBound worst{spec.confidence_level, 0.0};
+  const bool leaves_out = std::any_of(members.begin(), members.end(),
+                                      [](const auto& member) { return member.is_discrepancy; });
+  bool one_number = true, all_tried = true;
+  const DrawnStates* states = nullptr;
   for (const auto& member : members) {
     if (member.is_discrepancy) continue;
     ++claimed;
@@ -66,9 +64,13 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
     lost += member.lost;
     runs += member.runs;
     rejected = rejected || member.is_rejected;
-    first_start += member.is_first_start ? 1 : 0;
-    worst.confidence_level = std::min(worst.confidence_level, member.stated.confidence_level);
-    worst.epsilon = std::max(worst.epsilon, member.stated.epsilon);
+    const auto& initial = member.drawn.initial;
+    one_number = one_number && (states == nullptr || states->all == initial.all);
+    if (states == nullptr || initial.all != 1) states = &initial;
+    all_tried = all_tried && initial.all && initial.tried >= *initial.all;
+    const auto& bound = leaves_out ? member.shared : member.stated;
+    worst.confidence_level = std::min(worst.confidence_level, bound.confidence_level);
+    worst.epsilon = std::max(worst.epsilon, bound.epsilon);
   }
   if (law != nullptr) drawn.law = one_law ? *law : std::string("of each trace");
   if (claimed == 0 || worst.epsilon >= 1.0 || worst.confidence_level <= 0.0) return {};
@@ -86,23 +88,30 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
                              ? std::string()
                              : fmt::format(", {} counted as {}", base::counted(lost, "lost run"),
                                            base::agreed(lost, "a failure", "failures"));
+  if (one_number && states != nullptr) drawn.initial = *states;
+  if (one_number && !all_tried && drawn.initial.all) {
+    drawn.initial.tried = std::min(drawn.initial.tried, *drawn.initial.all - 1);
+  }
+  const double epsilon = as_planned ? spec.epsilon : worst.epsilon;
+  const auto region = all == 1 ? "the start region" : "its start region";
+  const auto starts = one_number
+                          ? starts_text(region, drawn, rejected)
+                          : fmt::format(
+                                "{}starts (one of the initial states that lead to its events, {}; "
+                                "then {})",
+                                rejected ? "valid " : "",
+                                all_tried ? "each equally likely and each tried"
+                                          : "each equally likely, not each tried",
+                                drawn_from("its region", drawn));
   auto text = fmt::format(
-      "with {} confidence, {}fewer than {} of {}start states {} give a discrepancy {} ({} "
-      "clean {} of {}{}){}",
-      level_text(worst.confidence_level), of_traces,
-      percent_up(as_planned ? spec.epsilon : worst.epsilon), rejected ? "valid " : "",
-      drawn_from(all == 1 ? "the start region" : "its start region", drawn),
-      comparison == Comparison::kFinal ? "in the last state" : "at any step", clean,
+      "with {} confidence, {}fewer than {} of {} give a discrepancy {}{} ({} clean {} of {}{}){}",
+      level_text(worst.confidence_level), of_traces, percent_up(epsilon), starts,
+      comparison == Comparison::kFinal ? "in the last state" : "at any step",
+      one_number ? single_state_text(drawn.initial, epsilon) : std::string(), clean,
       base::agreed(clean, "run", "runs"), runs, lost_text, kSupposition);
   if (!scope.completeness.empty()) text += "; " + scope.completeness;
   if (scope.split_initial) {
     text += "; each initial state that leads to the same events counts as a trace";
-  } else if (first_start > 0) {
-    const auto which = all == 1             ? std::string()
-                       : first_start == all ? std::string(" of each trace")
-                                            : fmt::format(" of {} of them", first_start);
-    text += fmt::format(
-        "; of the initial states that lead to the events{} only the first was sampled", which);
   }
   return text;
 }

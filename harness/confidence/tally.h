@@ -44,6 +44,8 @@ class Tally {
   /// A run that ended in another state which the model admits, too. It is clean and has no row: the
   /// regression is about one expected final state.
   void add_clean_elsewhere() { ++clean_, ++elsewhere_; }
+  /// A clean run of a trace with several initial states, of which the regression is not.
+  void add_clean_of_many() { ++clean_; }
   /// A run that the simulator lost (crash, hang, invalid numbers): counts as a failure.
   void add_lost() { ++lost_; }
   /// Start states that were not valid and drawn again; no run at all.

@@ -92,6 +92,7 @@ struct Key {
   static constexpr std::string_view kSphere = "sphere";
   static constexpr std::string_view kStrategy = "strategy";
   static constexpr std::string_view kStarts = "starts";
+  static constexpr std::string_view kInitial = "initial";
   static constexpr std::string_view kStartWeights = "start_weights";
   static constexpr std::string_view kUndecided = "undecided";
   static constexpr std::string_view kUntilCovered = "until_covered";

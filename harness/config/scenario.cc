@@ -141,6 +141,7 @@ class ScenarioReader {
       scenario.start_weights = read_start_weights(*node, sink_);
       scenario.start_weights_source = node->range;
     }
+    read_initial(scenario);
     static constexpr std::array<std::string_view, 2> kMatches = {"model", "trace"};
     if (fields_.choice(Key::kMatch, "value of " + key_text(Key::kMatch), kMatches, 0) ==
         std::size_t{1}) {
@@ -170,6 +171,30 @@ class ScenarioReader {
   }
 
  private:
+  /// `start_weights` alone means `initial: weights`.
+  void read_initial(Scenario& scenario) {
+    const auto* weights = fields_.find(Key::kStartWeights);
+    const auto* initial = fields_.find(Key::kInitial);
+    if (weights != nullptr) scenario.initial = Initial::kWeights;
+    const auto choice = fields_.choice(Key::kInitial, "value of " + key_text(Key::kInitial),
+                                       kInitialWords, static_cast<std::size_t>(scenario.initial));
+    if (!choice || initial == nullptr) return;
+    scenario.initial = static_cast<Initial>(*choice);
+    scenario.initial_source = initial->range;
+    const bool by_weights = scenario.initial == Initial::kWeights;
+    if (by_weights && weights == nullptr) {
+      sink_.error(codes::kMissingKey, initial->range, "`initial: weights`", Key::kStartWeights);
+    } else if (!by_weights && weights != nullptr) {
+      sink_.error(codes::kYamlOutOfBounds, initial->range, key_text(Key::kInitial),
+                  fmt::format("`{}`", to_string(scenario.initial)),
+                  "`weights` where `start_weights` are given");
+    }
+    if (scenario.initial == Initial::kFirst && scenario.execution == Execution::kClosedLoop) {
+      sink_.error(codes::kYamlOutOfBounds, initial->range, key_text(Key::kInitial), "`first`",
+                  "`all` or `weights` in closed loop");
+    }
+  }
+
   /// model, plan, bind, constraints, horizon: what the compiler reads.
   void read_problem(Scenario& scenario) {
     if (const auto* node = fields_.require(Key::kModel)) {

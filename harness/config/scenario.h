@@ -159,7 +159,9 @@ struct Scenario {
   Execution execution = Execution::kOpenLoop;
   base::SourceRange execution_source;
   Starts starts = Starts::kUniform;
-  /// Closed loop: initial states are drawn by the weight of the first formula that holds in them, 1
+  Initial initial = Initial::kAll;
+  base::SourceRange initial_source;  // where it is written
+  /// Initial states are drawn by the weight of the first formula that holds in them, 1
   /// where none does; without entries each is equally likely.
   std::vector<StartWeight> start_weights;
   base::SourceRange start_weights_source;

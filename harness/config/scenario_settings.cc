@@ -44,6 +44,7 @@ constexpr std::array<SectionEffects, kScenarioKeys.size()> kSectionEffects = {{
     {Key::kCompare, {Effect::kJudgement}},
     {Key::kExecution, {Effect::kPhysics}},
     {Key::kStarts, {Effect::kStarts}},
+    {Key::kInitial, {Effect::kStarts}},
     {Key::kStartWeights, {Effect::kStarts}},
     {Key::kUntilCovered, {Effect::kClaim}},
     {Key::kMatch, {Effect::kJudgement}},

@@ -5,6 +5,7 @@
 #include "compiler/base/json.h"
 #include "compiler/base/shown_text.h"
 #include "harness/campaign/run_setup.h"
+#include "harness/campaign/start_words.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/rounding.h"
 #include "harness/report/law_json.h"
@@ -59,6 +60,10 @@ std::string rates_text(const RatesResult& result) {
   for (const TraceRates& trace : result.traces) {
     out += fmt::format("\ntrace {}: {} runs, {} starts rejected, {} lost\n  {}\n", trace.number,
                        trace.runs, trace.rejected, trace.lost, trace.trace);
+    if (!trace.starts.is_single()) {
+      out += fmt::format("  {}\n", tried_text(trace.starts));
+      for (const auto& text : failing_states(trace.starts)) out += "  fails: " + text + "\n";
+    }
     if (trace.law) {
       out += fmt::format("  starts: {}\n", trace.law->text());
       const auto refused = trace.law->refused_text();
@@ -117,6 +122,7 @@ std::string rates_json(const RatesResult& result) {
                                   {"causes", std::move(causes)}});
     auto& object = document["traces"].back();
     if (trace.of_the_solver > 0) object["of_the_solver"] = trace.of_the_solver;
+    object["initial_states"] = starts_json<OrderedJson>(trace.starts);
     if (trace.law) object["law"] = law_json<OrderedJson>(*trace.law);
     if (!trace.left_out.empty()) object["left_out"] = trace.left_out;
     if (result.until_width > 0.0) object["narrow"] = !result.is_too_wide(trace);

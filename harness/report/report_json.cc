@@ -156,6 +156,7 @@ OrderedJson json_of(const TraceResult& result, const std::vector<ComparedFluents
   out["paper"] = {{"stopped_at", nullptr}, {"variant", result.paper_variant}};
   if (result.paper_stopped_at) out["paper"]["stopped_at"] = *result.paper_stopped_at;
   out["not_covered"] = result.not_covered;
+  if (!result.loop) out["initial_states"] = starts_json<OrderedJson>(result.starts);
   if (result.loop) {
     out["initial_states"] = result.loop->initial_states;
     out["start_law"] = result.loop->has_weights ? "weights" : "uniform";

@@ -8,6 +8,7 @@
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/utf8.h"
 #include "compiler/base/words.h"
+#include "harness/campaign/start_words.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/family.h"
 #include "harness/confidence/rounding.h"
@@ -81,6 +82,8 @@ class Summary {
       text = "interrupted";
     } else if (result_.verdict == CampaignVerdict::kInconclusive) {
       text = why_inconclusive();
+    } else if (result_.verdict == CampaignVerdict::kNoDiscrepancy) {
+      text = in_states_text(result_);  // where the scenario leaves the others out
     }
     // The word carries its colour, of which the width knows nothing.
     const auto plain = headline_verdict(result_, false);
@@ -105,7 +108,12 @@ class Summary {
         result_.traces.begin(), result_.traces.end(),
         [](const auto& trace) { return trace.verdict == CampaignVerdict::kInconclusive; });
     if (open == 0) return "nothing differs so far, and there are more traces than a limit admits";
+    const auto undecided = std::count_if(result_.traces.begin(), result_.traces.end(),
+                                         [](const auto& trace) { return !trace.is_decided; });
     const auto& first = result_.traces.front();
+    if (undecided == 0 && !first.loop) {
+      return fmt::format("no discrepancy found {}", in_states_text(result_));
+    }
     if (first.loop && first.loop->unfinished > 0) {
       return fmt::format(
           "{} (of the first: {})",
@@ -167,6 +175,8 @@ class Summary {
           line("refused", refused);
         }
       }
+      if (!trace.starts.is_single()) line("starts", tried_text(trace.starts));
+      for (const auto& text : failing_states(trace.starts)) line("fails", text);
       line("runs", runs_of(trace) +
                        (trace.rejected > 0 ? fmt::format("; {} drawn again", trace.rejected) : ""));
       if (result_.discrepancies.empty() && !trace.loop && trace.trace->event_count() > 0) {

@@ -7,6 +7,7 @@
 #include "compiler/base/words.h"
 #include "harness/campaign/result_json.h"
 #include "harness/campaign/sample_record.h"
+#include "harness/campaign/start_words.h"
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/family.h"
@@ -100,6 +101,7 @@ class TextReport {
       events(trace);
       start(trace);
     }
+    if (!trace.loop && !trace.starts.is_single()) initial_states(trace.starts);
     if (trace.search) line("searched", search_text(*trace.search, trace.trace->number));
     if (trace.law) law(*trace.law);
     auto runs = fmt::format("{} ({} clean", trace.simulations, trace.clean);
@@ -165,6 +167,25 @@ class TextReport {
     out_ += table(rows, kLabelEnd).replace(0, kLabel.size(), kLabel);
     if (!trace.left_out.empty()) line("left out", trace.left_out + ", where no start is drawn");
     start_shares(trace);
+  }
+
+  /// The other initial states, and what came of each.
+  void initial_states(const StartResult& starts) {
+    constexpr std::size_t kMostRows = 24;
+    line("start states", tried_text(starts));
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& [number, counts] : starts.states) {
+      if (rows.size() == kMostRows) break;
+      rows.push_back({fmt::format("{}", number),
+                      fmt::format("{} clean, {} lost, {} not", counts.clean, counts.lost,
+                                  counts.discrepancies),
+                      counts.text});
+    }
+    if (rows.empty()) return;
+    out_ += table(rows, kLabelEnd);
+    if (starts.states.size() > rows.size()) {
+      line("", fmt::format("and {} more", starts.states.size() - rows.size()));
+    }
   }
 
   /// By which law, and what its conditions refused.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -50,6 +51,9 @@ std::string samples_csv(const std::vector<SampleRow>& rows) {
     }
   }
   std::string out = std::string(kSamplesCsvMark) + "event,cause,reason,sim_time_s";
+  const bool has_states =
+      std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.start_state > 0; });
+  if (has_states) out += ",start_state";
   for (const auto& name : variables) out += ',' + base::csv_cell("start." + name);
   for (const auto& [event, name] : margins) {
     out += ',' + base::csv_cell(fmt::format("margin.{}.{}", event, name));
@@ -60,6 +64,7 @@ std::string samples_csv(const std::vector<SampleRow>& rows) {
                        row.drawn ? "drawn" : "chosen", row.rejected, row.retries, row.outcome,
                        row.event ? std::to_string(*row.event) : std::string(),
                        base::csv_cell(row.cause), base::csv_cell(row.reason), row.sim_time_s);
+    if (has_states) out += fmt::format(",{}", row.start_state);
     for (const auto& name : variables) out += ',' + cell(row.start, name);
     for (const auto& [event, name] : margins) {
       out += ',';

@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "runtime/enumerate/canonical.h"
+#include "runtime/enumerate/start_groups.h"
 
 namespace parallax::runtime {
 
@@ -76,56 +77,56 @@ std::vector<Literal> PlanEnumerator::hit_at(Timepoint n) const {
   return literals;
 }
 
-void PlanEnumerator::prepare_orders(Timepoint n) {
-  key_order_.clear();
-  start_order_.clear();
-  state_order_.clear();
-  choice_order_.clear();
+PlanEnumerator::Orders PlanEnumerator::orders_of(Timepoint n) const {
+  Orders out;
   std::map<std::pair<Timepoint, compiler::PlanAtom>, Literal> results;
   session_->model().for_each_atom([&](const compiler::AtomRef& atom) {
     const auto literal = atom.literal();
     const auto time = atom.time.value_or(0);
-    if (atom.kind == AtomKind::kHappens && time < n) key_order_.push_back(literal);
+    if (atom.kind == AtomKind::kHappens && time < n) out.key.push_back(literal);
     if (atom.kind == AtomKind::kResult && time <= n) {
       results.emplace(std::pair(time, atom.plan), literal);
     }
     if (std::holds_alternative<compiler::PlanChoiceId>(atom.plan) && time <= n) {
-      choice_order_.push_back(literal);
+      out.choice.push_back(literal);
     }
     if (atom.kind != AtomKind::kHoldsAt || time > n) return;
-    (time == 0 ? start_order_ : state_order_).push_back(~literal);
+    (time == 0 ? out.start : out.state).push_back(~literal);
   });
-  for (const auto& [what, literal] : results) key_order_.push_back(literal);
+  for (const auto& [what, literal] : results) out.key.push_back(literal);
+  return out;
 }
 
-/// `assumptions` and, in their order, the literals of a valuation up to n_, which the session
+/// `assumptions` and, in their order, the literals of a valuation up to `n`, which the session
 /// holds. None: the solver was stopped.
-std::optional<std::vector<Literal>> PlanEnumerator::settle(const std::vector<Literal>& assumptions,
+std::optional<std::vector<Literal>> PlanEnumerator::settle(Timepoint n, const Orders& orders,
+                                                           const std::vector<Literal>& assumptions,
                                                            const std::vector<Literal>& searched) {
   auto fixed = assumptions;
-  for (const auto* order : {&key_order_, &start_order_, &state_order_, &choice_order_}) {
+  for (const auto* order : {&orders.key, &orders.start, &orders.state, &orders.choice}) {
     // Which key it is, is asked of representatives, unless the first is wanted, which need not be
     // the first of those; what belongs to the key, of all.
     const bool first = options_.order == TraceOrder::kCanonical && !options_.representatives;
-    const auto& under = order == &key_order_ && !first ? searched : fixed;
-    const auto found = in_order(*session_, n_, under, *order, options_.order);
+    const auto& under = order == &orders.key && !first ? searched : fixed;
+    const auto found = in_order(*session_, n, under, *order, options_.order);
     if (!found) return std::nullopt;
     fixed.insert(fixed.end(), found->literals.begin(), found->literals.end());
   }
   return fixed;
 }
 
-/// The next trace of length n_ as `settle` makes it. It is looked for among prefixes, which are
+/// The next trace of length `n` as `settle` makes it. It is looked for among prefixes, which are
 /// cheaper: the first one that the model can continue to its horizon is the first trace. What keeps
 /// another from going on is learned as a clause.
-SolveStatus PlanEnumerator::find_settled(const std::vector<Literal>& assumptions,
+SolveStatus PlanEnumerator::find_settled(Timepoint n, const Orders& orders,
+                                         const std::vector<Literal>& assumptions,
                                          const std::vector<Literal>& searched,
                                          std::vector<Literal>& fixed) {
-  auto status = session_->solve(n_, searched);
+  auto status = session_->solve(n, searched);
   for (bool known = false; status == SolveStatus::kSatisfiable; known = true) {
-    const auto settled = settle(assumptions, searched);
+    const auto settled = settle(n, orders, assumptions, searched);
     if (!settled) return SolveStatus::kUnknown;
-    status = session_->solve_whole(n_, *settled);
+    status = session_->solve_whole(n, *settled);
     if (status != SolveStatus::kUnsatisfiable) {
       fixed = *settled;
       return status;
@@ -135,13 +136,13 @@ SolveStatus PlanEnumerator::find_settled(const std::vector<Literal>& assumptions
       if (session_->failed(literal)) dead.push_back(~literal);
     }
     if (!known || options_.order != TraceOrder::kCanonical) {
-      status = session_->solve_whole(n_, searched);
-      if (status == SolveStatus::kUnsatisfiable && !dead_end_) dead_end_ = n_;
+      status = session_->solve_whole(n, searched);
+      if (status == SolveStatus::kUnsatisfiable && !dead_end_) dead_end_ = n;
       if (status != SolveStatus::kSatisfiable) return status;
     }
     session_->add_clause(dead);
     // In any order the valuation at hand does.
-    if (options_.order == TraceOrder::kCanonical) status = session_->solve(n_, searched);
+    if (options_.order == TraceOrder::kCanonical) status = session_->solve(n, searched);
   }
   return status;
 }
@@ -153,7 +154,7 @@ std::optional<Trace> PlanEnumerator::next() {
         finish();
         return std::nullopt;
       }
-      prepare_orders(++n_);
+      orders_ = orders_of(++n_);
       guard_ = session_->lengths().ends(n_);
     }
     auto assumptions = hit_at(n_);
@@ -162,7 +163,7 @@ std::optional<Trace> PlanEnumerator::next() {
     const auto broken = breaking();
     if (broken) searched.push_back(*broken);
     std::vector<Literal> fixed;
-    const auto status = find_settled(assumptions, searched, fixed);
+    const auto status = find_settled(n_, orders_, assumptions, searched, fixed);
     if (status == SolveStatus::kUnknown) {
       done_ = true;
       return std::nullopt;
@@ -180,7 +181,7 @@ std::optional<Trace> PlanEnumerator::next() {
                               [&](Literal literal) { return session_->value(literal); });
     trace.number = ++found_;
     note_alternatives(fixed, head, trace);
-    const auto named = key_order_.size() + (options_.split_initial ? start_order_.size() : 0);
+    const auto named = orders_.key.size() + (options_.split_initial ? orders_.start.size() : 0);
     std::vector<Literal> blocking;
     for (const auto literal : std::span(fixed).subspan(head, named)) blocking.push_back(~literal);
     blocking.push_back(~*guard_);
@@ -191,7 +192,7 @@ std::optional<Trace> PlanEnumerator::next() {
 }
 
 /// Is there a valuation with the fixed literals in which some literal of `different` is false?
-base::Known PlanEnumerator::has_alternative(std::span<const Literal> fixed,
+base::Known PlanEnumerator::has_alternative(Timepoint n, std::span<const Literal> fixed,
                                             std::span<const Literal> different) {
   const auto wanted = session_->new_variable();
   std::vector<Literal> clause = {~wanted};
@@ -199,7 +200,7 @@ base::Known PlanEnumerator::has_alternative(std::span<const Literal> fixed,
   session_->add_clause(clause);
   std::vector<Literal> assumptions(fixed.begin(), fixed.end());
   assumptions.push_back(wanted);
-  const auto status = session_->solve_whole(n_, assumptions);
+  const auto status = session_->solve_whole(n, assumptions);
   const auto retired = ~wanted;
   session_->add_clause(std::span(&retired, 1));
   return possible(status);
@@ -209,48 +210,140 @@ base::Known PlanEnumerator::has_alternative(std::span<const Literal> fixed,
 /// states after it.
 void PlanEnumerator::note_alternatives(std::span<const Literal> fixed, std::size_t length,
                                        Trace& trace) {
-  const auto head = length + key_order_.size();
-  const auto start = fixed.subspan(head, start_order_.size());
-  const auto states = fixed.subspan(head + start.size(), state_order_.size());
+  const auto head = length + orders_.key.size();
+  const auto start = fixed.subspan(head, orders_.start.size());
+  const auto states = fixed.subspan(head + start.size(), orders_.state.size());
   if (!options_.split_initial) {
-    trace.other_initial_states = has_alternative(fixed.first(head), start);
+    trace.other_initial_states = has_alternative(n_, fixed.first(head), start);
   }
-  trace.other_outcomes = has_alternative(fixed.first(head + start.size()), states);
+  trace.other_outcomes = has_alternative(n_, fixed.first(head + start.size()), states);
 }
 
-base::Known PlanEnumerator::admits(
-    const Trace& trace, const std::vector<std::map<compiler::FluentId, bool>>& observed) {
+std::vector<Literal> PlanEnumerator::key_of(const Trace& trace) const {
   const auto n = trace.length();
-  auto assumptions = hit_at(n);
+  auto out = hit_at(n);
+  session_->model().for_each_atom([&](const compiler::AtomRef& atom) {
+    const auto literal = atom.literal();
+    const auto time = atom.time.value_or(0);
+    if (atom.kind == AtomKind::kHappens && time < n) {
+      const auto& point = trace.points[static_cast<std::size_t>(time)];
+      out.push_back(contains(point.happens, atom.event()) ? literal : ~literal);
+    } else if (atom.kind == AtomKind::kResult && time <= n) {
+      const auto& point = trace.points[static_cast<std::size_t>(time) - 1];
+      const auto* returned = std::get_if<compiler::ReturnedObject>(&atom.plan);
+      const bool is_true = returned != nullptr && point.returned == returned->object;
+      out.push_back(is_true ? literal : ~literal);
+    }
+  });
+  return out;
+}
+
+base::Known PlanEnumerator::admits(const Trace& trace,
+                                   const std::vector<std::map<compiler::FluentId, bool>>& observed,
+                                   const std::vector<compiler::FluentId>* start_fluents) {
+  const auto n = trace.length();
   // A fluent without a variable is false in every trace.
   for (const auto& state : observed) {
     for (const auto& [fluent, holds] : state) {
       if (holds && !session_->model().fluents[fluent.index()].slot) return base::Known::kNo;
     }
   }
+  const auto is_fixed = [&](compiler::FluentId fluent) {
+    return start_fluents == nullptr ||
+           std::binary_search(start_fluents->begin(), start_fluents->end(), fluent);
+  };
+  auto assumptions = key_of(trace);
   session_->model().for_each_atom([&](const compiler::AtomRef& atom) {
-    const auto literal = atom.literal();
-    const auto kind = atom.kind;
     const auto time = atom.time.value_or(0);
-    if (kind == AtomKind::kHappens && time < n) {
-      const auto& point = trace.points[static_cast<std::size_t>(time)];
-      assumptions.push_back(contains(point.happens, atom.event()) ? literal : ~literal);
-    } else if (kind == AtomKind::kResult && time <= n) {
-      const auto& point = trace.points[static_cast<std::size_t>(time) - 1];
-      const auto* returned = std::get_if<compiler::ReturnedObject>(&atom.plan);
-      const bool is_true = returned != nullptr && point.returned == returned->object;
-      assumptions.push_back(is_true ? literal : ~literal);
-    } else if (kind == AtomKind::kHoldsAt && time == 0) {
+    if (atom.kind != AtomKind::kHoldsAt || time > n) return;
+    const auto literal = atom.literal();
+    if (time == 0) {
       const bool holds = contains(trace.points.front().holds, atom.fluent());
-      assumptions.push_back(holds ? literal : ~literal);
-    } else if (kind == AtomKind::kHoldsAt && time <= n) {
-      const auto& state = observed[static_cast<std::size_t>(time)];
-      const auto wanted = state.find(atom.fluent());
-      if (wanted == state.end()) return;
-      assumptions.push_back(wanted->second ? literal : ~literal);
+      if (is_fixed(atom.fluent())) assumptions.push_back(holds ? literal : ~literal);
+      return;
     }
+    const auto& state = observed[static_cast<std::size_t>(time)];
+    const auto wanted = state.find(atom.fluent());
+    if (wanted == state.end()) return;
+    assumptions.push_back(wanted->second ? literal : ~literal);
   });
   return possible(session_->solve_whole(n, assumptions));
+}
+
+InitialStates PlanEnumerator::initial_states(const Trace& trace,
+                                             std::span<const compiler::FluentId> fluents,
+                                             std::size_t limit) {
+  const auto n = trace.length();
+  const auto& model = session_->model();
+  std::vector<std::pair<compiler::FluentId, Literal>> told;
+  for (const auto fluent : fluents) {
+    if (const auto literal = model.holds_at(fluent, 0)) told.emplace_back(fluent, *literal);
+  }
+  auto assumptions = key_of(trace);
+  const auto others = session_->new_variable();  // switches the blocking clauses on
+  assumptions.push_back(others);
+  InitialStates out;
+  for (;;) {
+    const auto status = session_->solve_whole(n, assumptions);
+    out.stopped = status == SolveStatus::kUnknown;
+    if (status != SolveStatus::kSatisfiable) break;
+    out.more = out.states.size() == limit;
+    if (out.more) break;
+    auto& state = out.states.emplace_back();
+    std::vector<Literal> blocking = {~others};
+    for (const auto& [fluent, literal] : told) {
+      const bool holds = session_->value(literal);
+      if (holds) state.push_back(fluent);
+      blocking.push_back(holds ? ~literal : literal);
+    }
+    std::sort(state.begin(), state.end());
+    session_->add_clause(blocking);
+  }
+  const auto retired = ~others;
+  session_->add_clause(std::span(&retired, 1));
+  std::sort(out.states.begin(), out.states.end());
+  return out;
+}
+
+std::optional<std::vector<std::vector<std::vector<compiler::FluentId>>>>
+PlanEnumerator::initial_parts(const Trace& trace, std::span<const compiler::FluentId> fluents,
+                              std::size_t limit) {
+  std::vector<std::vector<std::vector<compiler::FluentId>>> out;
+  for (const auto& group : connected_at_start(session_->model(), fluents)) {
+    auto values = initial_states(trace, group, limit);
+    if (values.stopped) return std::nullopt;
+    if (values.more) return out = {}, out;
+    out.push_back(std::move(values.states));
+  }
+  return out;
+}
+
+TraceFrom PlanEnumerator::from(const Trace& trace, std::span<const compiler::FluentId> fluents,
+                               const std::vector<compiler::FluentId>& state) {
+  const auto n = trace.length();
+  auto start = key_of(trace);
+  for (const auto fluent : fluents) {
+    const auto literal = session_->model().holds_at(fluent, 0);
+    const bool holds = contains(state, fluent);
+    if (holds && !literal) return {base::Known::kNo, std::nullopt};
+    if (literal) start.push_back(holds ? *literal : ~*literal);
+  }
+  auto orders = orders_of(n);
+  orders.key.clear();
+  const auto dead_end = dead_end_;  // is about keys
+  std::vector<Literal> fixed;
+  const auto status = find_settled(n, orders, start, start, fixed);
+  dead_end_ = dead_end;
+  TraceFrom out{possible(status), std::nullopt};
+  if (status != SolveStatus::kSatisfiable) return out;
+  out.trace = decode_trace(session_->model(), symbols_, n,
+                           [&](Literal literal) { return session_->value(literal); });
+  out.trace->number = trace.number;
+  const auto states =
+      std::span(fixed).subspan(start.size() + orders.start.size(), orders.state.size());
+  out.trace->other_outcomes = has_alternative(n, start, states);
+  if (out.trace->other_outcomes == base::Known::kUndecided) return {};
+  return out;
 }
 
 /// Is there an execution that never meets the constraints and goes on beyond the horizon?

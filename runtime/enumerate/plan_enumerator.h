@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/enumerate/path_admission.h"
 #include "runtime/enumerate/trace_source.h"
 #include "runtime/session/solver_session.h"
 #include "runtime/symmetry/lex_leader.h"
@@ -43,6 +44,13 @@ struct OpenEnds {
   std::optional<std::size_t> step;  // the first of CompiledModel::plan that would come next
 };
 
+/// A trace with the events of another one, from an initial state that was asked for.
+struct TraceFrom {
+  /// Does the model have one? Undecided if the solver was stopped.
+  base::Known exists = base::Known::kUndecided;
+  std::optional<Trace> trace;  // if so
+};
+
 /// The traces of a model (with or without a plan) that end where the state constraints hold for
 /// the first time, at the first timepoint that has a hit atom (1, of a violation 0) or later, and
 /// that the model can continue to its horizon. A prefix that cannot go on is no trace. Two
@@ -69,23 +77,57 @@ class PlanEnumerator {
   bool by_symmetry() const { return by_symmetry_; }
 
   /// Does the model admit, for the trace's events and initial state, a last state in which each of
-  /// these fluents has the value given, and which it can continue? At most two solver calls.
+  /// these fluents has the value given, and which it can continue? The initial state is that of the
+  /// trace in every fluent, or in those of `start_fluents` if it is given. At most two solver
+  /// calls.
   base::Known admits(const Trace& trace,
-                     const std::vector<std::map<compiler::FluentId, bool>>& observed);
+                     const std::vector<std::map<compiler::FluentId, bool>>& observed,
+                     const std::vector<compiler::FluentId>* start_fluents = nullptr);
+
+  /// The initial states that lead to the key of a trace that was given, each as its true ones of
+  /// `fluents`, in the order of their members; states that agree on these are one. At most `limit`
+  /// of them, with one solver call each and one more.
+  InitialStates initial_states(const Trace& trace, std::span<const compiler::FluentId> fluents,
+                               std::size_t limit);
+  /// Groups of `fluents` that clauses about timepoint 0 connect, each with the values that it can
+  /// have by itself in an initial state that leads to the key; every initial state is one value of
+  /// each group. No groups where one has more than `limit` values. None: stopped.
+  std::optional<std::vector<std::vector<std::vector<compiler::FluentId>>>> initial_parts(
+      const Trace& trace, std::span<const compiler::FluentId> fluents, std::size_t limit);
+  /// The first trace, in canonical order, with the key of `trace`, which was given, and an initial
+  /// state in which exactly `state` of `fluents` hold. `state` is ascending.
+  TraceFrom from(const Trace& trace, std::span<const compiler::FluentId> fluents,
+                 const std::vector<compiler::FluentId>& state);
   /// Names of the ids in the traces.
   const Symbols& symbols() const { return symbols_; }
 
  private:
   std::optional<Literal> breaking();
   void note_refuted(std::optional<Literal> breaking);
-  base::Known has_alternative(std::span<const Literal> fixed, std::span<const Literal> different);
+  base::Known has_alternative(Timepoint n, std::span<const Literal> fixed,
+                              std::span<const Literal> different);
   void note_alternatives(std::span<const Literal> fixed, std::size_t length, Trace& trace);
+  /// The literals that tell executions of one length apart, most important first.
+  struct Orders {
+    /// Happens before the end, then what performs returned, by time and name; true preferred: the
+    /// trace's key.
+    std::vector<Literal> key;
+    std::vector<Literal> start;  // HoldsAt at 0, false preferred
+    std::vector<Literal> state;  // HoldsAt from 1 on, false preferred
+    /// Free choices of the plan, true preferred: of the same events the ways that the text names
+    /// first.
+    std::vector<Literal> choice;
+  };
+  Orders orders_of(Timepoint n) const;
   std::vector<Literal> hit_at(Timepoint n) const;
-  std::optional<std::vector<Literal>> settle(const std::vector<Literal>& assumptions,
+  /// Literals that fix the length and the key of a trace that was given.
+  std::vector<Literal> key_of(const Trace& trace) const;
+  std::optional<std::vector<Literal>> settle(Timepoint n, const Orders& orders,
+                                             const std::vector<Literal>& assumptions,
                                              const std::vector<Literal>& searched);
-  SolveStatus find_settled(const std::vector<Literal>& assumptions,
+  SolveStatus find_settled(Timepoint n, const Orders& orders,
+                           const std::vector<Literal>& assumptions,
                            const std::vector<Literal>& searched, std::vector<Literal>& fixed);
-  void prepare_orders(Timepoint n);
   void finish();
   bool find_open_ends(std::span<const Literal> unmet, bool running);
   SolveStatus find_cuts(std::span<const Literal> unmet);
@@ -98,14 +140,7 @@ class PlanEnumerator {
   Timepoint first_ = 1;  // with a hit atom
   Timepoint n_ = 0;
   std::optional<Literal> guard_;  // switches the blocking clauses of length n_ on
-  /// Happens before n_, then what performs returned up to n_, by time and name; true preferred: the
-  /// trace's key.
-  std::vector<Literal> key_order_;
-  std::vector<Literal> start_order_;  // HoldsAt at 0, false preferred
-  std::vector<Literal> state_order_;  // HoldsAt from 1 to n_, false preferred
-  /// Free choices of the plan, true preferred: of the same events the ways that the text names
-  /// first.
-  std::vector<Literal> choice_order_;
+  Orders orders_;                 // of length n_
   std::int64_t found_ = 0;
   std::optional<SymmetryBreaker> breaker_;
   bool by_symmetry_ = false;

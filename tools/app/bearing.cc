@@ -6,6 +6,8 @@ harness::JournalText without_samples(const harness::JournalText& journal) {
   harness::JournalText out;
   out.header = journal.header;
   out.traces = journal.traces;
+  out.starts = journal.starts;
+  out.start_places = journal.start_places;
   out.trace_places = journal.trace_places;
   return out;
 }

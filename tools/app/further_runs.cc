@@ -23,7 +23,7 @@ class FurtherRuns {
         scenario_(as_run.scenario),
         options_(options),
         context_(context),
-        feed_(as_run.compilation.model, context,
+        feed_(as_run, context,
               {.all_hits = found.journal.header->asked.all_hits,
                .split_initial = found.journal.header->asked.split_initial}) {
     // Judged as the run was.
@@ -52,6 +52,7 @@ class FurtherRuns {
     if ((*journal)->find(found_.path.id.trace) == nullptr) {
       (*journal)->append(found_.journal.traces.at(found_.path.id.trace));
     }
+    trial->announce_by([&](const harness::TracePlan& plan) { return announce(**journal, plan); });
     if (!sample(**journal, bench, *trial)) return sink.already_reported();
     trial->end();
     bench.close();
@@ -99,11 +100,22 @@ class FurtherRuns {
     }
   }
 
+  /// Writes the trace from another initial state down before the first simulation of it.
+  base::Status announce(harness::Journal& journal, const harness::TracePlan& plan) {
+    if (!check_draws(journal, plan)) return context_.sink().already_reported();
+    const auto number = plan.trace->number;
+    if (journal.find(number, plan.start_state) == nullptr) {
+      journal.append(harness::TraceLine{plan.trace, plan.calls, plan.start_state, {}});
+    }
+    return base::Unit{};
+  }
+
   /// Recorded samples must be the draws for their numbers.
   base::Status check_draws(const harness::Journal& journal, const harness::TracePlan& plan) {
     for (const auto& [key, record] : journal.recorded().samples) {
       const auto place = journal.recorded().places.find(key);
       if (place == journal.recorded().places.end() || is_recorded(record)) continue;
+      if (record.start_state != plan.start_state) continue;
       const auto why =
           harness::wrong_draw(record, plan.sampler, plan.campaign_seed, plan.trace_key);
       if (why.empty()) continue;

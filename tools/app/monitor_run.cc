@@ -62,9 +62,9 @@ std::vector<RecordedStep> steps_of(const SampleRecord& record,
     for (const auto& step : record.path->steps) out.push_back({step.event, step.succeeded});
     return out;
   }
-  const auto line = journal.traces.find(record.trace);
-  if (line == journal.traces.end()) return out;
-  const auto& trace = *line->second.trace;
+  const auto* line = journal.find_line_of(record);
+  if (line == nullptr) return out;
+  const auto& trace = *line->trace;
   for (std::size_t t = 0; t < trace.event_count(); ++t) out.push_back({trace.event(t), {}});
   return out;
 }

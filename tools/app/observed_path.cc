@@ -145,7 +145,7 @@ base::Result<std::vector<ObservedPath>> observed_paths(const ScenarioModel& load
   for (const auto& [key, record] : journal.samples) {
     if (record.phase != harness::DrawPhase::kCertify) continue;
     if (record.status != harness::SampleStatus::kOk) continue;
-    if (!record.path && !journal.traces.contains(record.trace)) {
+    if (!record.path && journal.find_line_of(record) == nullptr) {
       return context.sink().error(codes::kForeignJournalLine, journal.places.at(key),
                                   "its trace is not in the journal");
     }

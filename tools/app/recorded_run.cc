@@ -246,21 +246,22 @@ base::Result<harness::CampaignTrace> check_recorded_run(const ScenarioModel& loa
 base::Status check_recorded_starts(const ScenarioModel& loaded, const harness::JournalText& journal,
                                    Context& context) {
   auto& sink = context.sink();
-  std::map<std::int64_t, std::optional<harness::Sampler>> samplers;  // by trace
+  std::map<harness::StartKey, std::optional<harness::Sampler>> samplers;
   for (const auto& [key, record] : journal.samples) {
-    const auto line = journal.traces.find(record.trace);
+    const auto* line = journal.find_line_of(record);
     if (record.path || record.phase != harness::DrawPhase::kCertify) continue;
-    if (line == journal.traces.end()) continue;
-    const auto& recorded = *line->second.trace;
-    if (!samplers.contains(record.trace)) {
+    if (line == nullptr) continue;
+    const auto& recorded = *line->trace;
+    const harness::StartKey start(record.trace, record.start_state);
+    if (!samplers.contains(start)) {
       const auto trace = in_ids_of(loaded.compilation.model, recorded);
       if (!trace) {
-        return sink.error(codes::kForeignJournalLine, journal.trace_places.at(record.trace),
+        return sink.error(codes::kForeignJournalLine, journal.line_place_of(record),
                           "it names what the model has not");
       }
-      samplers.emplace(record.trace, sampler_of(loaded.scenario, *trace));
+      samplers.emplace(start, sampler_of(loaded.scenario, *trace));
     }
-    const auto why = wrong_start(samplers.at(record.trace), record, journal.header->seed, recorded);
+    const auto why = wrong_start(samplers.at(start), record, journal.header->seed, recorded);
     if (why.empty()) continue;
     return sink.error(codes::kForeignJournalLine, journal.places.at(key), why);
   }

@@ -59,7 +59,8 @@ SampleRecord failing_record(const RecordedDiscrepancy& found,
   const auto& id = found.path.id;
   auto record = found.journal.samples.at({id.trace, id.sample, DrawPhase::kCertify});
   if (!record.path) {
-    calls = found.journal.traces.at(id.trace).calls;
+    calls = found.journal.line_of(record).calls;
+    record.start_state = 0;  // the folder has the trace from this state only
     return record;
   }
   auto& path = *record.path;
@@ -108,11 +109,16 @@ base::Result<SameStart> same_start_runs(const std::string& run_dir,
     start.symbols = std::move(symbols);
     const auto maker = std::make_shared<const OtherSeeds>(std::move(record), std::move(calls),
                                                           harness::may_repeat_losses(info));
-    const auto line = found.journal.traces.find(id.trace);
     const bool executed = found.path.executed;
-    const auto made = (*runs)->make({executed ? nullptr : &line->second, maker,
-                                     std::make_shared<const harness::CampaignTrace>(start)},
-                                    1, options.repeats);
+    std::optional<harness::TraceLine> line;
+    if (!executed) {
+      const harness::SampleKey failing(id.trace, found.path.id.sample, DrawPhase::kCertify);
+      line = found.journal.line_of(found.journal.samples.at(failing));
+    }
+    if (line) line->start_state = 0;
+    const auto made = (*runs)->make(
+        {line ? &*line : nullptr, maker, std::make_shared<const harness::CampaignTrace>(start)}, 1,
+        options.repeats);
     if (!made) return sink.already_reported();
     std::vector<SampleRecord> records;
     for (const auto& [key, one] : (*runs)->samples()) {

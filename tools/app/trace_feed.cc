@@ -10,6 +10,7 @@
 #include "harness/region/state_mapping.h"
 #include "runtime/explain/contradiction.h"
 #include "runtime/session/solver_session.h"
+#include "tools/app/start_weights.h"
 #include "tools/app/trace_writer.h"
 
 namespace parallax::tools {
@@ -115,6 +116,12 @@ EnumeratedTraces::EnumeratedTraces(const compiler::CompiledModel& model, Context
           model, runtime::make_cadical_solver(&context.stop()))),
       enumerator_(std::make_unique<runtime::PlanEnumerator>(*session_, options)) {}
 
+EnumeratedTraces::EnumeratedTraces(const ScenarioModel& loaded, Context& context,
+                                   const runtime::PlanEnumeratorOptions& options)
+    : EnumeratedTraces(loaded.compilation.model, context, options) {
+  if (loaded.scenario.initial == harness::Initial::kWeights) loaded_ = &loaded;
+}
+
 base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
   auto trace = enumerator_->next();
   const bool is_stopped = enumerator_->exploration() == runtime::Exploration::kStopped;
@@ -149,7 +156,71 @@ base::Known EnumeratedTraces::admits(
     const harness::CampaignTrace& trace,
     const std::vector<std::map<compiler::FluentId, bool>>& observed) {
   PARALLAX_REQUIRE(trace.number <= given_, "a trace that was given is asked about");
-  return enumerator_->admits(trace, observed);
+  const auto told_by = told_by_.find(trace.number);
+  return enumerator_->admits(trace, observed,
+                             told_by == told_by_.end() ? nullptr : &told_by->second);
+}
+
+base::Result<std::optional<harness::TraceStarts>> EnumeratedTraces::starts(
+    const harness::CampaignTrace& trace, std::span<const compiler::FluentId> fluents) {
+  auto found = enumerator_->initial_states(trace, fluents, harness::kMostInitialStates);
+  if (found.stopped) return std::optional<harness::TraceStarts>();
+  harness::TraceStarts out;
+  out.more = found.more;
+  std::vector<compiler::FluentId> own;
+  for (const auto fluent : fluents) {
+    if (runtime::contains(trace.points.front().holds, fluent)) own.push_back(fluent);
+  }
+  out.states.push_back(own);
+  std::vector<compiler::FluentId> told_by(fluents.begin(), fluents.end());
+  if (found.more) {
+    auto parts = enumerator_->initial_parts(trace, fluents, harness::kMostInitialStates);
+    if (!parts) return std::optional<harness::TraceStarts>();
+    out.parts = *std::move(parts);
+  } else {
+    for (auto& state : found.states) {
+      if (state != own) out.states.push_back(std::move(state));
+    }
+  }
+  if (loaded_ != nullptr && !weigh(out, told_by)) return context_->sink().already_reported();
+  if (out.more || out.states.size() > 1 || out.states.front() != own) {
+    told_by_[trace.number] = std::move(told_by);
+  }
+  return std::optional(std::move(out));
+}
+
+/// Gives the states their weights, and leaves out those that have none.
+base::Status EnumeratedTraces::weigh(harness::TraceStarts& starts,
+                                     const std::vector<compiler::FluentId>& told_by) {
+  if (starts.more) {
+    return context_->sink().error(codes::kTooManyInitialStates,
+                                  loaded_->scenario.start_weights_source,
+                                  harness::kMostInitialStates);
+  }
+  const auto value = [&](const std::string& predicate) {
+    return runtime::predicate_value(*session_, predicate);
+  };
+  const auto weights = start_weights(*loaded_, starts.states, told_by, value, *context_);
+  if (!weights) return context_->sink().already_reported();
+  auto states = std::move(starts.states);
+  starts.states.clear();
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if ((*weights)[i] == 0.0) continue;
+    starts.states.push_back(std::move(states[i]));
+    starts.weights.push_back((*weights)[i]);
+  }
+  return base::Unit{};
+}
+
+base::Result<std::pair<base::Known, std::optional<harness::CampaignTrace>>> EnumeratedTraces::from(
+    const harness::CampaignTrace& trace, std::span<const compiler::FluentId> fluents,
+    const std::vector<compiler::FluentId>& state) {
+  auto found = enumerator_->from(trace, fluents, state);
+  if (!found.trace) return std::pair(found.exists, std::optional<harness::CampaignTrace>());
+  auto converted = campaign_trace(*model_, *std::move(found.trace), *context_);
+  if (!converted) return context_->sink().already_reported();
+  converted->key = trace.key;
+  return std::pair(base::Known::kYes, std::optional(*std::move(converted)));
 }
 
 /// Called when the search is exhausted: it is proved that no trace meets the constraints.

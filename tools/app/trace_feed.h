@@ -10,6 +10,7 @@
 #include "harness/campaign/trace_input.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/context.h"
+#include "tools/app/scenario_model.h"
 
 namespace parallax::tools {
 
@@ -20,10 +21,18 @@ class EnumeratedTraces final : public harness::TraceFeed {
   /// `model` and `context` outlive the feed.
   EnumeratedTraces(const compiler::CompiledModel& model, Context& context,
                    const runtime::PlanEnumeratorOptions& options = {});
+  /// The same with what the scenario says of initial states; `loaded` outlives the feed, too.
+  EnumeratedTraces(const ScenarioModel& loaded, Context& context,
+                   const runtime::PlanEnumeratorOptions& options = {});
   base::Result<std::optional<harness::CampaignTrace>> next() override;
   std::string exploration() const override;
   std::vector<std::string> bounds() const override;
   runtime::Symbols symbols() const override { return enumerator_->symbols(); }
+  base::Result<std::optional<harness::TraceStarts>> starts(
+      const harness::CampaignTrace& trace, std::span<const compiler::FluentId> fluents) override;
+  base::Result<std::pair<base::Known, std::optional<harness::CampaignTrace>>> from(
+      const harness::CampaignTrace& trace, std::span<const compiler::FluentId> fluents,
+      const std::vector<compiler::FluentId>& state) override;
   base::Known admits(const harness::CampaignTrace& trace,
                      const std::vector<std::map<compiler::FluentId, bool>>& observed) override;
   /// Sets the source of notes for the message that no execution meets the constraints.
@@ -34,11 +43,15 @@ class EnumeratedTraces final : public harness::TraceFeed {
 
  private:
   base::Status explain_absence() const;
+  base::Status weigh(harness::TraceStarts& starts, const std::vector<compiler::FluentId>& told_by);
 
   const compiler::CompiledModel* model_;
   Context* context_;
   bool split_initial_;
   std::function<std::vector<std::string>()> reasons_;
+  const ScenarioModel* loaded_ = nullptr;  // with `start_weights`; null: there are none
+  /// What tells initial states apart, of traces that were asked about, by number.
+  std::map<std::int64_t, std::vector<compiler::FluentId>> told_by_;
   std::unique_ptr<runtime::SolverSession> session_;
   std::unique_ptr<runtime::PlanEnumerator> enumerator_;
   std::int64_t given_ = 0;  // the number of the last trace

@@ -133,7 +133,7 @@ int run_rates(const RateOptions& given, Invocation& invocation) {
   const auto simulator = permitted_simulator(
       *loaded, options.commands.allow || !options.commands.refuse, invocation, *workers);
   if (!simulator) return 0;
-  EnumeratedTraces traces(model, invocation);
+  EnumeratedTraces traces(*loaded, invocation);
   traces.explain_absence_by([&] { return reasons_for_absence(*loaded, invocation); });
   if (options.method != "counting") {
     const int code = run_rare(options, *loaded, traces, *simulator, invocation);

@@ -121,7 +121,10 @@ harness::CampaignOptions campaign_options(const RunOptions& options, const Scena
   campaign.keep_going = options.keep_going || loaded.scenario.until_covered;
   campaign.resume = options.resume;
   campaign.all_hits = options.hits == "all";
-  campaign.split_initial = options.split_initial;
+  // The paper's rule is about one initial state.
+  campaign.split_initial =
+      options.split_initial || (loaded.scenario.criterion.kind == harness::CriterionKind::kPaper &&
+                                loaded.scenario.execution == harness::Execution::kOpenLoop);
   if (!options.out.empty()) {
     campaign.run_dir = options.out;
   } else {
@@ -155,7 +158,7 @@ Ran run_open(const ScenarioModel& loaded, const harness::SimulatorFactory& simul
   if (!model.has_constraints) {
     return {sink.error(codes::kNothingToSimulate, base::SourceRange{loaded.scenario.source, 0, 0})};
   }
-  EnumeratedTraces traces(model, invocation,
+  EnumeratedTraces traces(loaded, invocation,
                           {.all_hits = campaign.all_hits, .split_initial = campaign.split_initial});
   traces.explain_absence_by([&] { return reasons_for_absence(loaded, invocation); });
   if (opinion != nullptr && !opinion->start(traces.symbols(), campaign)) {

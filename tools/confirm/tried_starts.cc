@@ -103,7 +103,9 @@ base::Result<std::unique_ptr<TriedStarts>> TriedStarts::open(
 }
 
 base::Status TriedStarts::prepare_trace() {
-  line_ = &found_.journal.traces.at(found_.path.id.trace);
+  line_ = found_.journal.line_of(like_);
+  line_->start_state = 0;  // the folder has the trace from this state only
+  like_.start_state = 0;
   const auto trace = runs_->in_symbols(*line_->trace);
   const auto prepared = runs_->prepare_start(trace);
   if (!prepared) return context_.sink().already_reported();
@@ -151,9 +153,8 @@ void TriedStarts::add_parameters(const harness::Sampler& sampler) {
 /// Takes the recorded starts of the same trace with the seed of the simulation that failed.
 base::Status TriedStarts::take_record() {
   const auto recorded = runs_->traces().find(found_.path.id.trace);
-  if (line_ != nullptr && recorded != runs_->traces().end() &&
-      (recorded->second.trace->key != line_->trace->key ||
-       recorded->second.calls != line_->calls)) {
+  if (line_ && recorded != runs_->traces().end() &&
+      !same_but_for_places(recorded->second, *line_)) {
     return context_.sink()
         .error_about(codes::kReplayImpossible, kFolder,
                      "the starts that were tried earlier are of another trace")
@@ -228,10 +229,10 @@ base::Status TriedStarts::simulate(const std::vector<State>& starts) {
   const auto first = next_;
   const auto last = first + std::ssize(starts) - 1;
   const auto maker = std::make_shared<const OtherStarts>(
-      like_, line_ == nullptr ? std::vector<harness::ActionCall>() : line_->calls,
+      like_, line_ ? line_->calls : std::vector<harness::ActionCall>(),
       harness::may_repeat_losses(simulator()), stream_ == nullptr ? nullptr : stream_->samples(),
       first, starts);
-  const auto made = runs_->make({line_, maker, start_, true}, first, last);
+  const auto made = runs_->make({line_ ? &*line_ : nullptr, maker, start_, true}, first, last);
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const auto number = first + static_cast<std::int64_t>(i);
     if (runs_->samples().contains({like_.trace, number, like_.phase})) {

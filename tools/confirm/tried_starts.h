@@ -85,7 +85,7 @@ class TriedStarts {
   std::unique_ptr<ExtraRuns> runs_;
   std::unique_ptr<ClosedLoop> loop_;                     // of an executed plan
   std::unique_ptr<harness::LoopStream> stream_;          // likewise
-  const harness::TraceLine* line_ = nullptr;             // of a trace
+  std::optional<harness::TraceLine> line_;               // of a trace
   std::shared_ptr<const harness::CampaignTrace> start_;  // that all of them begin in
   std::vector<StartParameter> parameters_;
   std::vector<std::string> fixed_;

@@ -28,6 +28,15 @@ class BoundedTraces final : public harness::TraceFeed {
                      const std::vector<std::map<compiler::FluentId, bool>>& observed) override {
     return traces_.admits(trace, observed);
   }
+  base::Result<std::optional<harness::TraceStarts>> starts(
+      const harness::CampaignTrace& trace, std::span<const compiler::FluentId> fluents) override {
+    return traces_.starts(trace, fluents);
+  }
+  base::Result<std::pair<base::Known, std::optional<harness::CampaignTrace>>> from(
+      const harness::CampaignTrace& trace, std::span<const compiler::FluentId> fluents,
+      const std::vector<compiler::FluentId>& state) override {
+    return traces_.from(trace, fluents, state);
+  }
 
  private:
   EnumeratedTraces& traces_;

@@ -168,7 +168,7 @@ class ScenarioLearner {
     limit_runs(round->loaded->scenario, std::nullopt);
     // The number of traces depends on the runs that they take.
     round->loaded->scenario.criterion.family = harness::Family::kPerTrace;
-    EnumeratedTraces all(round->loaded->compilation.model, *round->context);
+    EnumeratedTraces all(*round->loaded, *round->context);
     std::int64_t made = 0, done = 0, trace = 0;
     BoundedTraces traces(all, made, options_.max_runs - result_.simulations);
     auto options = folder_->campaign(*round);

@@ -165,9 +165,9 @@ class TimelineMaker {
       }
       return;
     }
-    const auto line = journal_.traces.find(record.trace);
-    if (line == journal_.traces.end()) return;
-    const auto& trace = *line->second.trace;
+    const auto* line = journal_.find_line_of(record);
+    if (line == nullptr) return;
+    const auto& trace = *line->trace;
     for (std::size_t i = 0; i < trace.event_count(); ++i) {
       out.steps.push_back({trace.event(i), trace.plan[i].source, {}, {}, {}});
       outcome_of(i, out.steps.back());
@@ -193,9 +193,9 @@ class TimelineMaker {
 
   template <typename RowOf>
   void predict(const SampleRecord& record, std::size_t count, const RowOf& row_of) const {
-    const auto line = journal_.traces.find(record.trace);
-    if (record.path || line == journal_.traces.end()) return;
-    const auto& trace = *line->second.trace;
+    const auto* line = journal_.find_line_of(record);
+    if (record.path || line == nullptr) return;
+    const auto& trace = *line->trace;
     std::set<std::string> names;
     if (fluents_) {
       for (const auto& fluent : fluents_->ground()) names.insert(fluent.text);

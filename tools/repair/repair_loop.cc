@@ -209,7 +209,7 @@ class Rounds {
       if (!feed) return sink.already_reported();
       return harness::run_loop_campaign(loaded.scenario, **feed, *simulator, options, files, sink);
     }
-    EnumeratedTraces traces(loaded.compilation.model, context_,
+    EnumeratedTraces traces(loaded, context_,
                             {.all_hits = options.all_hits, .split_initial = options.split_initial});
     return harness::run_campaign(loaded.scenario, traces, *simulator, options, files, sink);
   }

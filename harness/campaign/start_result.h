@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/confidence/comparison.h"
+
+namespace parallax::harness {
+
+/// So many initial states of a trace are listed; of more some are drawn.
+inline constexpr std::int64_t kMostInitialStates = 10'000;
+
+/// What the simulations from one initial state showed.
+struct StateCounts {
+  std::string text;  // what tells it from the others: "TrolleyAt(onWay)"
+  std::int64_t clean = 0, lost = 0, discrepancies = 0;
+  std::int64_t seen() const { return clean + discrepancies; }
+};
+
+/// The initial states that lead to a trace's events, and which of them were simulated.
+struct StartResult {
+  Initial law = Initial::kAll;
+  /// Number of initial states, told apart by the fluents that are compared. None: more than are
+  /// listed.
+  std::optional<std::int64_t> all = 1;
+  std::int64_t tried = 0;   // seen to the end of a simulation at least once
+  std::int64_t visits = 0;  // simulations for their sake, which count for no claim
+  /// Where not all are listed: candidates that the draw made, and those that are no initial state
+  /// of the trace.
+  std::int64_t candidates = 0, refused = 0;
+  std::vector<std::string> unrealisable;       // no start of the world has them, with the reason
+  std::map<std::int64_t, StateCounts> states;  // those that were simulated, by number
+
+  /// Is there nothing to say?
+  bool is_single() const { return all == 1; }
+  /// Was every initial state tried, or is it written in the scenario that the first is enough?
+  bool is_covered() const { return law == Initial::kFirst || (all && tried >= *all); }
+};
+
+}  // namespace parallax::harness

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/campaign/campaign_result.h"
+#include "harness/campaign/trial.h"
+
+namespace parallax::harness {
+
+/// Counts a simulation by its initial state.
+void count_start(const StartStates& states, const TrialSample& sample, StartResult& result);
+
+/// The law of a trace's starts, with its initial states.
+DrawnStarts drawn_starts(const TraceResult& result, DrawnStarts drawn);
+
+/// "6", or "more than 10000": the number of initial states.
+std::string states_text(const StartResult& starts);
+/// "in 7 of 24 initial states", of all traces together; empty where each was tried, and no trace
+/// has others that the scenario leaves out.
+std::string in_states_text(const CampaignResult& result);
+/// "5 of 6 initial states tried", with what was refused; empty where there is one.
+std::string tried_text(const StartResult& starts);
+
+/// "2 of 3 runs from TrolleyAt(onWay)", for each initial state with a discrepancy, the first few.
+std::vector<std::string> failing_states(const StartResult& starts);
+
+/// Caveats about initial states that were not simulated. `max_runs`: the limit that there was.
+void add_start_caveats(const StartResult& starts, std::int64_t max_runs,
+                       std::vector<std::string>& caveats);
+
+}  // namespace parallax::harness
