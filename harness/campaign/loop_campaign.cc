@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -16,6 +17,7 @@
 #include "harness/campaign/repetition.h"
 #include "harness/campaign/run_setup.h"
 #include "harness/campaign/start_check.h"
+#include "harness/campaign/start_words.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/item_bounds.h"
 
@@ -70,6 +72,8 @@ class LoopCampaign {
     result_.journal_open = true;
     stream_.loop->initial_states = samples_.initial_states();
     stream_.loop->has_weights = samples_.has_weights();
+    stream_.starts.all = samples_.initial_states();
+    stream_.starts.law = scenario_.initial;
     if (scenario_.until_covered && !watch_what_is_shown()) return finished(true);
     if (!samples_.continue_from(*journal_)) return sink_.already_reported();
     const auto ended = sample();
@@ -102,7 +106,7 @@ class LoopCampaign {
     for (;;) {
       const auto decision = criterion_->decide(tally_);
       report_progress(decision);
-      if (decision.stop && is_covered()) return End::kDecided;
+      if (decision.stop && is_covered()) return visit_others();
       if (executions() >= limit_.max_runs) return End::kRunLimit;
       if (goes_on_anyway() && executions() >= planned() && is_covered()) return End::kPlanned;
       samples_.submit_to(last_wanted(decision));
@@ -113,6 +117,42 @@ class LoopCampaign {
       if (!end) return sink_.already_reported();
       if (*end) return **end;
     }
+  }
+
+  /// Executes the plan once from each initial state that no execution was seen from, where the
+  /// limit of runs has room for it. These count for no claim.
+  base::Result<End> visit_others() {
+    std::vector<std::int64_t> left;
+    for (std::int64_t state = 1; state <= samples_.initial_states(); ++state) {
+      const auto found = stream_.starts.states.find(state);
+      if (found == stream_.starts.states.end() || found->second.seen() == 0) left.push_back(state);
+    }
+    if (std::ssize(left) > limit_.max_runs - executions()) return End::kDecided;
+    for (const auto state : left) {
+      auto next = samples_.visit(state);
+      if (!next || !check_written(*journal_, options_, sink_)) return sink_.already_reported();
+      if (!*next) return End::kStopped;
+      ++stream_.starts.visits;
+      auto end = consume(**std::move(next));
+      if (!end) return sink_.already_reported();
+      if (*end) return **end;
+    }
+    return End::kDecided;
+  }
+
+  /// Counts an execution by its initial state.
+  void count_start(const SampleRecord& record, bool is_lost, bool is_clean) {
+    if (stream_.starts.is_single()) {
+      stream_.starts.tried = 1;
+      return;
+    }
+    auto& counts = stream_.starts.states[record.path->start];
+    if (counts.text.empty()) {
+      counts.text = fmt::format("{}", fmt::join(samples_.start_of(record).state->holds(0), " "));
+    }
+    const bool was_seen = counts.seen() > 0;
+    ++(is_lost ? counts.lost : is_clean ? counts.clean : counts.discrepancies);
+    if (!was_seen && counts.seen() > 0) ++stream_.starts.tried;
   }
 
   /// False when stopped.
@@ -176,6 +216,7 @@ class LoopCampaign {
     }
     bench_.end_row_of_losses();
     count(record);
+    count_start(record, false, judgement.admitted == base::Known::kYes);
     if (judgement.admitted == base::Known::kNo) return accept(std::move(record), judgement);
     const auto unfinished = why_unfinished(*record.path, scenario_);
     using Kept = RunRecorder::Verdict;
@@ -250,7 +291,7 @@ class LoopCampaign {
 
   /// Claims are about starts that were drawn; of others only what is found counts.
   static bool is_guided(const SampleRecord& record) { return !record.path->target.empty(); }
-  void note_guided() { ++*stream_.loop->guided; }
+  void note_guided() { stream_.loop->guided = stream_.loop->guided.value_or(0) + 1; }
 
   /// An execution that came to a result. Is it one of those that rates are about?
   bool note(const SampleRecord& record, bool admitted) {
@@ -276,6 +317,7 @@ class LoopCampaign {
       (void)rated_.next();  // it has its place, but what it would have shown is not known
     }
     count_loss(record, stream_);
+    count_start(record, true, false);
     tell(record, "lost");
     lost_too_often_ = bench_.lost_too_often(record, samples_.on_record(record));
     consumed_.push_back(std::move(record));
@@ -368,9 +410,10 @@ class LoopCampaign {
     stream.left_out = law_.drawn().left_out;
     const bool decided =
         criterion_->decide(tally_).stop && stream.loop->unfinished == 0 && is_covered();
-    stream.verdict = !result_.discrepancies.empty() ? CampaignVerdict::kDiscrepancy
-                     : decided                      ? CampaignVerdict::kNoDiscrepancy
-                                                    : CampaignVerdict::kInconclusive;
+    stream.is_decided = decided;
+    stream.verdict = !result_.discrepancies.empty()          ? CampaignVerdict::kDiscrepancy
+                     : decided && stream.starts.is_covered() ? CampaignVerdict::kNoDiscrepancy
+                                                             : CampaignVerdict::kInconclusive;
     const auto guided = stream.loop->guided.value_or(0);
     stream.simulations = executions() + guided;
     const auto bound = certified_bound(tally_, criterion.confidence_level);
@@ -388,10 +431,13 @@ class LoopCampaign {
       stream.claim = "nothing is claimed: an execution did not end";
       stream.caveats.push_back(stream.loop->why_unfinished);
     }
+    if (decided && !stream.starts.is_covered()) {
+      add_start_caveats(stream.starts, limit_.max_runs, stream.caveats);
+    }
     if (guided > 0) {
       stream.caveats.push_back(fmt::format(
-          "{} of the executions began in states that were chosen for what they lead to; "
-          "the claim is about the others alone, whose starts were drawn",
+          "{} of the executions began in states that were chosen; the claim is about the others "
+          "alone, whose starts were drawn",
           guided));
     }
     rate_causes(rated_, lost_too_often_, result_.interrupted, stream);

@@ -10,6 +10,7 @@
 #include "harness/campaign/sample_margin.h"
 #include "harness/campaign/search_phase.h"
 #include "harness/campaign/start_law.h"
+#include "harness/campaign/start_words.h"
 #include "harness/campaign/trial.h"
 #include "harness/confidence/rounding.h"
 
@@ -67,6 +68,11 @@ class RareEstimator {
     law.name(trial->plan().sampler);
     rate.law = law.drawn().law;
     rate.left_out = law.drawn().left_out;
+    trial->starts().describe(rate.starts);
+    if (!rate.starts.all) {
+      return sink_.error(codes::kTooManyInitialStates, base::SourceRange{scenario_.source, 0, 0},
+                         kMostInitialStates);
+    }
     const auto made = StartCube::make(trial->starts(), scenario_, bench_.fluents(), sink_);
     if (!made) return sink_.already_reported();
     const auto& cube = *made;
@@ -81,7 +87,7 @@ class RareEstimator {
     bool failed = false;
     RareEventResult unfinished;  // counts of a batch that was not simulated to its end
     rate.estimate = estimate_rare_event(options, [&](std::span<const UnitPoint> points) {
-      return simulated(*trial, cube, points, next, scale, failed, unfinished);
+      return simulated(*trial, cube, points, next, scale, failed, unfinished, rate.starts);
     });
     trial->end();
     if (failed) return sink_.already_reported();
@@ -95,8 +101,8 @@ class RareEstimator {
   std::optional<std::vector<Evaluation>> simulated(Trial& trial, const StartCube& cube,
                                                    std::span<const UnitPoint> points,
                                                    std::int64_t& next, MarginScale& scale,
-                                                   bool& failed,
-                                                   RareEventResult& unfinished) const {
+                                                   bool& failed, RareEventResult& unfinished,
+                                                   StartResult& starts_seen) const {
     const bool is_first = scale.size() == 0;
     const auto at_once = kPointsOfJob * static_cast<std::size_t>(options_.jobs);
     std::vector<Evaluation> out;
@@ -117,6 +123,9 @@ class RareEstimator {
       for (std::size_t i = 0; i < (**tried).size(); ++i) {
         const auto& sample = (**tried)[i];
         Evaluation answer{points[begin + i], evaluation_kind(sample)};
+        if (answer.kind != EvaluationKind::kInvalid) {
+          count_start(trial.starts(), sample, starts_seen);
+        }
         parts.emplace_back();
         if (sample.verdict == SampleVerdict::kLostTooOften) {
           out.push_back(std::move(answer));

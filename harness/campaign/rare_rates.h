@@ -13,6 +13,7 @@ namespace parallax::harness {
 struct RareTraceRate {
   std::int64_t number = 0;
   std::string trace;     // its events
+  StartResult starts;    // the initial states that were simulated
   std::string law;       // that starts are drawn by, as LawResult::text; empty: uniform
   std::string left_out;  // the part of the start region that is never drawn
   RareEventResult estimate;

@@ -10,9 +10,6 @@
 
 namespace parallax::harness {
 
-/// So many initial states of a trace are listed; of more some are drawn.
-inline constexpr std::int64_t kMostInitialStates = 10'000;
-
 /// What the simulations from one initial state showed.
 struct StateCounts {
   std::string text;  // what tells it from the others: "TrolleyAt(onWay)"

@@ -47,7 +47,6 @@ std::string in_states_text(const CampaignResult& result) {
   std::int64_t tried = 0;
   std::optional<std::int64_t> all = 0;
   for (const auto& trace : result.traces) {
-    if (trace.loop) return {};
     tried += trace.starts.tried;
     all = all && trace.starts.all ? std::optional(*all + *trace.starts.all) : std::nullopt;
   }

@@ -137,11 +137,24 @@ class TraceCampaign {
         return context_.sink.already_reported();
       }
       if (!*sample) return TraceEnd::kStopped;
-      ++outcome_.result.starts.visits;
-      const auto end = consume(**std::move(sample));
-      if (end) return *end;
+      if (const auto end = consume_visit(**std::move(sample))) return *end;
     }
     return TraceEnd::kDecided;
+  }
+
+  /// Takes in a run that counts for no claim. Returns the end that it causes, if any.
+  std::optional<TraceEnd> consume_visit(TrialSample sample) {
+    auto& starts = outcome_.result.starts;
+    ++starts.visits;
+    count_start(trial_.starts(), sample, starts);
+    const bool found = sample.verdict == SampleVerdict::kDiscrepancy;
+    context_.recorder.judge(
+        sample.record, found ? RunRecorder::Verdict::kFinding : RunRecorder::Verdict::kNothing);
+    if (found) return accept_discrepancy(std::move(sample));
+    tell(sample, nullptr);
+    outcome_.consumed.push_back(std::move(sample.record));
+    if (sample.verdict == SampleVerdict::kLostTooOften) return TraceEnd::kLostTooOften;
+    return std::nullopt;
   }
 
   /// A run whose final state was that of its trace.
@@ -159,7 +172,6 @@ class TraceCampaign {
     auto& result = outcome_.result;
     tally_.add_rejected(sample.record.rejected);
     const auto& plan = trial_.plan_of(sample.record);
-    const bool counts = !sample.record.visit;
     law_.add(plan.sampler, plan.campaign_seed, plan.trace_key, sample.record);
     result.rejected += sample.record.rejected;
     const bool is_lost =
@@ -174,7 +186,7 @@ class TraceCampaign {
     switch (sample.verdict) {
       case SampleVerdict::kLost:
       case SampleVerdict::kLostTooOften:
-        if (counts) tally_.add_lost();
+        tally_.add_lost();
         count_loss(sample.record, result);
         trial_.draw_independently();
         break;
@@ -182,12 +194,12 @@ class TraceCampaign {
         return accept_discrepancy(std::move(sample));
       case SampleVerdict::kAsPredicted:
         if (sample.judgement.first_divergence) ++result.strayed;
-        if (counts) add_clean(sample.record);
+        add_clean(sample.record);
         note_failures(sample.record);
         ++result.clean;
         break;
       case SampleVerdict::kAdmitted:
-        if (counts) tally_.add_clean_elsewhere();
+        tally_.add_clean_elsewhere();
         note_failures(sample.record);
         ++result.admitted;
         ++result.clean;
@@ -294,6 +306,9 @@ class TraceCampaign {
       result.caveats = caveats(tally_, spec_, result.paper_stopped_at);
     }
     if (result.search) add_search_caveats(*result.search, result);
+    if (result.search && !result.starts.all) {
+      result.caveats.push_back("the search looked at the first initial state only");
+    }
     add_own_caveats(result);
     return std::move(outcome_);
   }
@@ -336,7 +351,7 @@ class TraceCampaign {
                                      "model admits them");
     }
     if (context_.scenario.comparison() == Comparison::kEveryStep) add_rest_caveat(result);
-    add_start_caveats(result.starts, max_runs_, result.caveats);
+    if (!outcome_.discrepancy) add_start_caveats(result.starts, max_runs_, result.caveats);
     if (is_alone_) {
       result.caveats.push_back(
           "the claim is about this trace by itself: how many there are was not known when it "

@@ -43,6 +43,9 @@ constexpr std::string_view to_string(Initial initial) {
   return kInitialWords[static_cast<std::size_t>(initial)];
 }
 
+/// So many initial states of a trace are listed; of more some are drawn.
+inline constexpr std::int64_t kMostInitialStates = 10'000;
+
 /// The law of the initial states in records: "uniform", "weights", "first".
 constexpr std::string_view law_word(Initial initial) {
   return initial == Initial::kAll ? "uniform" : to_string(initial);

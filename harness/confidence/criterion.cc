@@ -241,7 +241,7 @@ std::string starts_text(std::string_view region, const DrawnStarts& drawn, bool 
   const std::string_view only_valid = valid ? "valid " : "";
   const auto& [law, all, tried] = drawn.initial;
   if (all == 1) return fmt::format("{}start states {}", only_valid, drawn_from(region, drawn));
-  const auto number = all ? std::to_string(*all) : std::string("unlisted");
+  const auto number = all ? std::to_string(*all) : fmt::format("more than {}", kMostInitialStates);
   if (law == Initial::kFirst) {
     return fmt::format(
         "{}start states {}", only_valid,
@@ -252,9 +252,8 @@ std::string starts_text(std::string_view region, const DrawnStarts& drawn, bool 
                         : fmt::format("{} tried", all ? fmt::format("{} of {}", tried, *all)
                                                       : std::to_string(tried));
   return fmt::format(
-      "{}starts (one of the {} initial states that lead to its events, {} and {}; "
-      "then {})",
-      only_valid, number,
+      "{}starts (one of {}{} initial states that lead to its events, {} and {}; then {})",
+      only_valid, all ? "the " : "", number,
       law == Initial::kWeights ? "each as likely as its weight in `start_weights`"
                                : "each equally likely",
       each, drawn_from("its region", drawn));

@@ -72,6 +72,10 @@ std::string rates_text(const RareRatesResult& result) {
     const auto& estimate = trace.estimate;
     out += fmt::format("\ntrace {}: {} runs, {} starts rejected, {} lost\n  {}\n", trace.number,
                        estimate.runs, estimate.invalid, estimate.lost, trace.trace);
+    if (!trace.starts.is_single()) {
+      out += fmt::format("  {}\n", tried_text(trace.starts));
+      for (const auto& text : failing_states(trace.starts)) out += "  fails: " + text + "\n";
+    }
     if (!trace.law.empty()) out += fmt::format("  starts: {}\n", trace.law);
     if (!trace.left_out.empty()) out += fmt::format("  left out: {}\n", trace.left_out);
     const auto why = why_unanswered(trace, result);
@@ -107,6 +111,7 @@ std::string rates_json(const RareRatesResult& result) {
                        {"runs", estimate.runs},          {"rejected", estimate.invalid},
                        {"lost", estimate.lost},          {"end", to_string(estimate.end)},
                        {"left_out", trace.contradicting}};
+    object["initial_states"] = starts_json<RareJson>(trace.starts);
     if (!trace.law.empty()) object["law"] = trace.law;
     if (!trace.left_out.empty()) object["left_out"] = trace.left_out;
     if (has_interval(estimate, result.method)) {

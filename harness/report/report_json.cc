@@ -3,6 +3,7 @@
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "harness/campaign/result_json.h"
+#include "harness/campaign/start_words.h"
 #include "harness/report/discrepancy_summary.h"
 #include "harness/report/law_json.h"
 #include "harness/report/opinion_words.h"
@@ -159,6 +160,7 @@ OrderedJson json_of(const TraceResult& result, const std::vector<ComparedFluents
   if (!result.loop) out["initial_states"] = starts_json<OrderedJson>(result.starts);
   if (result.loop) {
     out["initial_states"] = result.loop->initial_states;
+    out["initial_states_tried"] = result.starts.tried;
     out["start_law"] = result.loop->has_weights ? "weights" : "uniform";
     out["unfinished"] = result.loop->unfinished;
     if (result.loop->guided) out["chosen_starts"] = *result.loop->guided;
@@ -272,6 +274,7 @@ OrderedJson json_of(const CampaignResult& result, bool with_timing) {
         {"traces", nullptr}, {"error", result.spending->text()}, {"claim", result.claim}};
     if (const auto traces = result.spending->traces()) out["family"]["traces"] = *traces;
   }
+  if (const auto text = in_states_text(result); !text.empty()) out["not_everywhere"] = text;
   out["traces"] = OrderedJson::array();
   for (const auto& trace : result.traces) out["traces"].push_back(json_of(trace, result.compared));
   out["discrepancies"] = OrderedJson::array();

@@ -111,7 +111,7 @@ class Summary {
     const auto undecided = std::count_if(result_.traces.begin(), result_.traces.end(),
                                          [](const auto& trace) { return !trace.is_decided; });
     const auto& first = result_.traces.front();
-    if (undecided == 0 && !first.loop) {
+    if (undecided == 0) {
       return fmt::format("no discrepancy found {}", in_states_text(result_));
     }
     if (first.loop && first.loop->unfinished > 0) {

@@ -218,7 +218,7 @@ class TextReport {
   /// Where executions begin, and which ways they went.
   void paths(const LoopResult& loop) {
     const auto guided = loop.guided
-                            ? fmt::format(", but in {} chosen for what they lead to",
+                            ? fmt::format(", but in {} chosen",
                                           base::counted(*loop.guided, "execution", "executions"))
                             : std::string();
     line("start states",

@@ -91,6 +91,7 @@ std::string samples_jsonl(const std::vector<SampleRow>& rows) {
                           {"reason", row.reason.empty() ? OrderedJson() : OrderedJson(row.reason)},
                           {"sim_time_s", row.sim_time_s},
                           {"state", state_json<OrderedJson>(row.start)}};
+    if (row.start_state > 0) object["start_state"] = row.start_state;
     auto margins = OrderedJson::array();
     for (std::size_t i = 0; i < row.margins.size(); ++i) {
       if (row.margins[i].empty()) continue;

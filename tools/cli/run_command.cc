@@ -409,7 +409,7 @@ Command run_command() {
   command.heading("Traces");
   add_hits_option(command, options->hits);
   command.flag("--split-initial", options->split_initial,
-               "Try every initial state, not only every sequence of events");
+               "Make each initial state a trace of its own, with its own claim");
   command.heading("Second opinion");
   add_opinion_options(command, options->opinion);
   add_command_options(command, options->commands, true);

@@ -98,6 +98,7 @@ PageSample page_sample(const SampleRecord& record, const PageData& page) {
   }
   for (const auto& body : page.bodies) out.ways.push_back(way_of(record, body));
   if (record.searched) out.origin = SampleOrigin::kSearch;
+  if (record.visit) out.origin = SampleOrigin::kChosen;
   if (record.path) {
     if (!record.path->target.empty()) out.origin = SampleOrigin::kChosen;
     using harness::PathEnd;

@@ -140,6 +140,17 @@ PageTrace trace_of(const json& entry) {
   }
   out.not_covered = texts(entry, "not_covered");
   out.initial_state = texts(entry, "initial_state");
+  if (const auto* initial = base::json_member(entry, "initial_states");
+      initial != nullptr && initial->is_object()) {
+    const auto* all = base::json_member(*initial, "all");
+    const auto known = all == nullptr ? std::nullopt : base::json_as<std::int64_t>(*all);
+    out.all_states =
+        known ? std::to_string(*known) : fmt::format("more than {}", harness::kMostInitialStates);
+    for (const auto& state : list(*initial, "states")) {
+      out.states.push_back({whole(state, "state"), text(state, "holds"), whole(state, "clean"),
+                            whole(state, "lost"), whole(state, "discrepancies")});
+    }
+  }
   out.chosen_starts = whole(entry, "chosen_starts");
   out.unfinished = whole(entry, "unfinished");
   if (const auto* cover = base::json_member(entry, "until_covered")) {

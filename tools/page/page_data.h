@@ -90,8 +90,17 @@ struct PagePath {
   std::int64_t simulations = 0, example = 0;
 };
 
+/// What came of the runs from one initial state of a trace.
+struct PageState {
+  std::int64_t number = 0;
+  std::string holds;
+  std::int64_t clean = 0, lost = 0, discrepancies = 0;
+};
+
 struct PageTrace {
   std::int64_t number = 0;
+  std::vector<PageState> states;  // where it has several initial states
+  std::string all_states;         // how many those are; "more than 10000"
   std::string verdict;  // "no-discrepancy", "discrepancy", "inconclusive"; empty: not known
   std::string claim;
   std::vector<std::string> initial_state;  // what holds at the start

@@ -75,6 +75,7 @@ std::string run_page(const PageData& page, const DocumentOptions& options) {
       {"motion", "Motion", motion_section(page)},
       {"map", "Map of starts", map_section(page)},
       {"starts", "Start variables", scatter_section(page)},
+      {"states", "Initial states", start_section(page)},
       {"confidence", "Confidence", confidence_section(page)},
       {"proof", "Proofs about starts", proof_section(page)},
       {"blame", "Why, and repairs", blame_section(page, links)},

@@ -59,6 +59,7 @@ struct CaseResult {
   bool repeatable = false;               // the answer depends on no limit and no foreign program
   std::string ledger;                    // what it was judged by (ledger_digest_of); empty: by none
   std::string verdict;                   // of a scenario's run
+  std::string where;                     // "in 1 of 6 initial states"; empty: in each
   std::string standing;                  // of its discrepancy: "not-asked", "stands", "in-doubt"
   std::vector<MeasuredRate> rates;       // of a scenario whose rate is expected
   std::vector<std::string> shown, gone;  // ids of the ledger: seen again, looked for in vain

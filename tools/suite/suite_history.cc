@@ -53,6 +53,7 @@ std::string hash_of(const std::vector<InputFile>& inputs) {
 void note_verdict(std::string_view run_document, CaseResult& result) {
   const auto run = base::parse_json(run_document);
   result.verdict = value_or<std::string>(run, "verdict", {});
+  result.where = base::printable(value_or<std::string>(run, "not_everywhere", {}));
 }
 
 void note_rates(std::string_view rates_document, CaseResult& result) {

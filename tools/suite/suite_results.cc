@@ -96,6 +96,7 @@ Json to_json(const CaseResult& result) {
           {"repeatable", result.repeatable},
           {"ledger", result.ledger},
           {"verdict", result.verdict},
+          {"where", result.where},
           {"standing", result.standing},
           {"rates", base::parse_json(encode_rates(result.rates))},
           {"shown", result.shown},
@@ -121,6 +122,7 @@ std::optional<CaseResult> result_from_json(const Json& json) {
   read(json, "repeatable", out.repeatable);
   read(json, "ledger", out.ledger);
   read(json, "verdict", out.verdict);
+  read(json, "where", out.where);
   read(json, "standing", out.standing);
   if (const auto* rates = base::json_member(json, "rates")) {
     out.rates = decode_rates(base::json_text(*rates));

@@ -72,6 +72,18 @@ std::size_t reused_cases(const SuiteRecord& record) {
   return count_if(record, [](const CaseResult& result) { return !result.reused.empty(); });
 }
 
+/// Cases that passed without every initial state being tried, a line each.
+std::string narrow_passes(const SuiteRecord& record) {
+  std::string out;
+  for (std::size_t i = 0; i < record.cases().size(); ++i) {
+    const auto& result = record.results()[i];
+    if (result.outcome != Outcome::kPassed || result.where.empty()) continue;
+    out += fmt::format("\n{} looked {} only.\n", base::markdown_text(record.cases()[i].name()),
+                       result.where);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string summary_text(const SuiteRecord& record) {
@@ -104,6 +116,7 @@ std::string summary_document(const SuiteRecord& record) {
     if (result.attempts > 1) item["attempts"] = result.attempts;
     if (!result.shown.empty()) item["known"] = result.shown;
     if (!result.standing.empty()) item["standing"] = result.standing;
+    if (!result.where.empty()) item["where"] = result.where;
     if (is_quarantined(record.cases()[i], result, record.quarantine())) {
       item["quarantined"] = record.quarantine().at(record.cases()[i].name());
     }
@@ -137,7 +150,7 @@ std::string summary_markdown(const SuiteRecord& record) {
                        record.results()[i].wall_s);
   }
   if (hidden > 0) out += fmt::format("\n{} more cases are not listed.\n", hidden);
-  return out;
+  return out + narrow_passes(record);
 }
 
 std::string github_annotations(const SuiteRecord& record) {

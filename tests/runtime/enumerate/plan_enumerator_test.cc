@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <map>
+
 #include "compiler/pipeline/compile.h"
 #include "compiler/plan/plan_graph.h"
 #include "runtime/enumerate/dead_steps.h"
@@ -187,6 +190,99 @@ TEST_CASE("a plan's trace is the beginning of an execution that reaches the hori
       }
     }
   }
+}
+
+using Fluents = std::vector<compiler::FluentId>;
+
+Fluents among(const Fluents& state, const Fluents& fluents) {
+  Fluents out;
+  for (const auto id : state) {
+    if (runtime::contains(fluents, id)) out.push_back(id);
+  }
+  return out;
+}
+
+TEST_CASE("the initial states of a trace are those that tracing each by itself gives") {
+  struct Case {
+    std::string text, constraint;
+    int horizon;
+  };
+  const std::vector<Case> cases = {
+      {kRooms, "HoldsAt(At(b2),time)", 5},
+      {kRooms, "HoldsAt(Lit(b2),time) & {event} Happens(event,time-1)", 6},
+      {kRooms + "[time] Releases(Go(b2),Lit(b2),time).\n", "HoldsAt(At(b2),time)", 4},
+      {kRooms + "HoldsAt(At(a1),0).\nHoldsAt(Lit(a1),0) | HoldsAt(Lit(b2),0).\n",
+       "HoldsAt(At(b2),time)", 4}};
+  int several = 0;
+  for (const auto& [text, constraint, horizon] : cases) {
+    CAPTURE(constraint);
+    PlannedModel model(text, kPlan, kBinding, constraint, horizon);
+    REQUIRE(model.codes() == "");
+    const auto count = static_cast<std::uint32_t>(model.compiled().fluents.size());
+    for (std::uint32_t mask = 0; mask < (1U << count); ++mask) {  // what tells states apart
+      Fluents told;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        if ((mask >> i & 1U) != 0) told.emplace_back(i);
+      }
+      // By key and told state: the states of the first trace in canonical order.
+      std::map<std::string, std::map<Fluents, std::vector<Fluents>>> expected;
+      runtime::SolverSession split(model.compiled(), runtime::make_cadical_solver());
+      runtime::PlanEnumerator each(split, {.split_initial = true});
+      while (const auto trace = each.next()) {
+        std::vector<Fluents> states;
+        for (const auto& point : trace->points) states.push_back(point.holds);
+        expected[runtime::event_key(*trace)].emplace(among(states.front(), told), states);
+      }
+      runtime::SolverSession session(model.compiled(), runtime::make_cadical_solver());
+      runtime::PlanEnumerator enumerator(session);
+      std::vector<runtime::Trace> traces;
+      while (auto trace = enumerator.next()) traces.push_back(*std::move(trace));
+      REQUIRE(traces.size() == expected.size());
+      for (const auto& trace : traces) {
+        const auto& wanted = expected.at(runtime::event_key(trace));
+        std::vector<Fluents> states;
+        for (const auto& [state, predicted] : wanted) states.push_back(state);
+        const auto found = enumerator.initial_states(trace, told, 100);
+        CHECK(found.states == states);
+        CHECK_FALSE(found.more);
+        CHECK(enumerator.initial_states(trace, told, states.size() - 1).more);
+        several += states.size() > 1 ? 1 : 0;
+        for (const auto& [state, predicted] : wanted) {
+          const auto from = enumerator.from(trace, told, state);
+          REQUIRE(from.exists == base::Known::kYes);
+          CHECK(runtime::event_key(*from.trace) == runtime::event_key(trace));
+          std::vector<Fluents> holds;
+          for (const auto& point : from.trace->points) holds.push_back(point.holds);
+          CHECK(holds == predicted);
+        }
+        // Whatever else can be told of the fluents is no initial state of the trace.
+        for (std::uint32_t other = mask;; other = (other - 1) & mask) {
+          Fluents state;
+          for (std::uint32_t i = 0; i < count; ++i) {
+            if ((other >> i & 1U) != 0) state.emplace_back(i);
+          }
+          if (!wanted.contains(state)) {
+            CHECK(enumerator.from(trace, told, state).exists == base::Known::kNo);
+          }
+          if (other == 0) break;
+        }
+        // Each state is one value of each part.
+        const auto parts = enumerator.initial_parts(trace, told, 100);
+        REQUIRE(parts);
+        for (const auto& state : states) {
+          for (const auto& values : *parts) {
+            Fluents group;
+            for (const auto& value : values) group.insert(group.end(), value.begin(), value.end());
+            std::sort(group.begin(), group.end());
+            group.erase(std::unique(group.begin(), group.end()), group.end());
+            const auto value = among(state, group);
+            CHECK(std::find(values.begin(), values.end(), value) != values.end());
+          }
+        }
+      }
+    }
+  }
+  CHECK(several > 20);
 }
 
 TEST_CASE("alternatives of a trace are noted, and asked about") {
