@@ -247,6 +247,7 @@ OrderedJson json_of(const CampaignResult& result, const Discrepancy& found) {
   const auto standing = standing_of(result, found);
   out["standing"] = {{"is", to_string(standing.is)}, {"words", standing.words}};
   if (found.path) add_path(found, out);
+  if (found.record.start_state > 0) out["start_state"] = found.record.start_state;
   return out;
 }
 
