@@ -29,6 +29,15 @@ std::string change_text(const RateCounts& before, const RateCounts& after) {
   return fmt::format("{} before, {} now", counts_text(before), counts_text(after));
 }
 
+/// Were the initial states drawn by the same law from as many? One state is one, however it was
+/// chosen; the number that "first" was chosen from may not be known.
+bool same_initial(const RevisionInitial& before, const RevisionInitial& after) {
+  if (before.is_one_state() && after.is_one_state()) {
+    return !before.all || !after.all || before.all == after.all;
+  }
+  return before.law == after.law && before.all == after.all;
+}
+
 /// Why the two cannot be compared; empty: they can.
 std::string not_comparable(const RatesRevision& before, const RatesRevision& after) {
   if (before.compare != after.compare) {
@@ -51,6 +60,10 @@ std::string not_comparable(const RatesRevision& before, const RatesRevision& aft
       const auto law_of = [](const std::string& law) { return law.empty() ? "uniformly" : law; };
       return fmt::format("starts of the trace {} were drawn by other laws ({}, now {})",
                          trace.events, law_of(trace.law), law_of(same->law));
+    }
+    if (!same_initial(trace.initial, same->initial)) {
+      return fmt::format("initial states of the trace {} were drawn otherwise ({}, now {})",
+                         trace.events, initial_text(trace.initial), initial_text(same->initial));
     }
   }
   for (const auto& trace : after.traces) {

@@ -5,6 +5,7 @@
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
+#include "harness/confidence/comparison.h"
 
 namespace parallax::tools {
 namespace {
@@ -28,6 +29,23 @@ std::int64_t count_at(const SortedJson& object, const char* name) {
   return count <= kMostCounted ? count : -1;
 }
 
+/// None: it is no `initial_states`.
+std::optional<RevisionInitial> initial_of(const SortedJson& json) {
+  const auto law = at<std::string>(json, "law");
+  const auto* all = base::json_member(json, "all");
+  const bool is_known = law == harness::law_word(harness::Initial::kAll) ||
+                        law == harness::law_word(harness::Initial::kWeights) ||
+                        law == harness::law_word(harness::Initial::kFirst);
+  if (!is_known || all == nullptr) return std::nullopt;
+  RevisionInitial out;
+  out.law = *law;
+  if (!all->is_null()) {
+    out.all = base::json_as<std::int64_t>(*all);
+    if (!out.all || *out.all < 1) return std::nullopt;
+  }
+  return out;
+}
+
 /// None: it is no such trace.
 std::optional<RevisionRates> rates_of(const SortedJson& json, bool fixed) {
   const auto events = at<std::string>(json, "events");
@@ -44,6 +62,11 @@ std::optional<RevisionRates> rates_of(const SortedJson& json, bool fixed) {
     for (const auto& word : *words) {
       out.law += (out.law.empty() ? "" : "; ") + base::json_as<std::string>(word).value_or("");
     }
+  }
+  if (const auto* initial = base::json_member(json, "initial_states")) {
+    const auto read = initial_of(*initial);
+    if (!read) return std::nullopt;
+    out.initial = *read;
   }
   std::int64_t sum = 0;
   for (const auto& cause : *causes) {
@@ -91,6 +114,14 @@ base::Result<RatesRevision> load_rates(const std::string& path, Context& context
   return out;
 }
 
+std::string initial_text(const RevisionInitial& initial) {
+  if (initial.law == harness::law_word(harness::Initial::kFirst)) {
+    return initial.all ? fmt::format("the first of {}", *initial.all) : "only the first";
+  }
+  return fmt::format("{} of {}", initial.law,
+                     initial.all ? std::to_string(*initial.all) : "more than are listed");
+}
+
 std::vector<Fact> rates_facts(const RatesRevision& rates) {
   std::vector<Fact> out;
   const auto add = [&](FactKind kind, const std::string& key, const std::string& rest) {
@@ -106,6 +137,9 @@ std::vector<Fact> rates_facts(const RatesRevision& rates) {
     add(FactKind::kDeclaration, name,
         fmt::format("{} runs, {} lost", trace.any.runs - trace.any.lost, trace.any.lost));
     if (!trace.law.empty()) add(FactKind::kDeclaration, name + ", starts", trace.law);
+    if (!trace.initial.is_one_state()) {
+      add(FactKind::kDeclaration, name + ", initial states", initial_text(trace.initial));
+    }
     add(FactKind::kAxiom, name, fmt::format("{} discrepancies", trace.any.failures));
     for (const auto& cause : trace.causes) {
       add(FactKind::kAxiom, fmt::format("{}, {}", name, cause.text), std::to_string(cause.count));

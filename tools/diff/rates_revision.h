@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,15 @@
 #include "tools/app/context.h"
 
 namespace parallax::tools {
+
+/// The initial states that the runs of a trace began in.
+struct RevisionInitial {
+  /// "uniform", "weights" or "first"; files of versions that sampled only the first do not say it.
+  std::string law = "first";
+  std::optional<std::int64_t> all;  // none: more than are listed; of "first" also: not known
+
+  bool is_one_state() const { return law == "first" || all == 1; }
+};
 
 /// The rates that `parallax rates --json` found for one trace.
 struct RevisionRates {
@@ -20,6 +30,7 @@ struct RevisionRates {
   };
   std::vector<Cause> causes;
   std::string law{};  // by which starts were drawn, in words; empty: uniformly
+  RevisionInitial initial{};
 };
 
 struct RatesRevision {
@@ -33,6 +44,9 @@ struct RatesRevision {
 
 /// Reports kNoRatesResult for a file without rates, or whose counts contradict each other.
 base::Result<RatesRevision> load_rates(const std::string& path, Context& context);
+
+/// "uniform of 6", "the first of 6", "only the first" where nothing says of how many.
+std::string initial_text(const RevisionInitial& initial);
 
 /// The rates as facts: what was counted as declarations, the counts as axioms.
 std::vector<compiler::Fact> rates_facts(const RatesRevision& rates);

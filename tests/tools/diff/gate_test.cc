@@ -306,6 +306,64 @@ TEST_CASE("rates under different laws of starts are not compared") {
   CHECK(holds(plain.out, "starts: box.x normal with mean 1 and sd 1; given box.x < 2"));
 }
 
+TEST_CASE("rates from initial states that were drawn otherwise are not compared") {
+  const Gate gate;
+  const auto rates = [&](const std::string& file, const Json& initial) {
+    Json trace = {{"events", "Go()"}, {"runs", 100}, {"lost", 0}};
+    trace["any"] = {{"count", 0}};
+    trace["causes"] = Json::array();
+    if (!initial.is_null()) trace["initial_states"] = initial;
+    gate.write(file, Json{{"status", "ok"},
+                          {"complete", true},
+                          {"compare", "every-step"},
+                          {"traces", Json::array({trace})}}
+                         .dump());
+  };
+  const auto drawn = [](const char* law, const Json& all) {
+    return Json{{"all", all}, {"tried", 1}, {"law", law}};
+  };
+  rates("old.json", nullptr);  // as versions wrote it that sampled the first state only
+  rates("one.json", drawn("uniform", 1));
+  rates("six.json", drawn("uniform", 6));
+  rates("seven.json", drawn("uniform", 7));
+  rates("many.json", drawn("uniform", nullptr));
+  rates("weights.json", drawn("weights", 6));
+  rates("first.json", drawn("first", 6));
+  const std::string rules = "rates: {worse: {margin: 0.1}}\n";
+  const auto outcome = [&](const std::string& before, const std::string& after) {
+    return gate.hold(rules, before, after)["rates.worse"].get<std::string>();
+  };
+  const std::vector<std::string> files = {"one.json",  "six.json",     "seven.json",
+                                          "many.json", "weights.json", "first.json"};
+  for (const auto& before : files) {
+    for (const auto& after : files) {
+      CAPTURE(before);
+      CAPTURE(after);
+      CHECK(outcome(before, after) == (before == after ? "kept" : "not decidable"));
+    }
+  }
+  // Nobody knows of how many states the old file has the first one.
+  for (const auto* other : {"old.json", "one.json", "first.json"}) {
+    CHECK(outcome("old.json", other) == "kept");
+    CHECK(outcome(other, "old.json") == "kept");
+  }
+  for (const auto* other : {"six.json", "many.json", "weights.json"}) {
+    CHECK(outcome("old.json", other) == "not decidable");
+    CHECK(outcome(other, "old.json") == "not decidable");
+  }
+  const auto words = gate.hold(rules, "old.json", "six.json")["rates.worse words"];
+  CHECK(holds(words.get<std::string>(),
+              "initial states of the trace Go() were drawn otherwise (only the first, now uniform "
+              "of 6)"));
+  const auto listed = gate.parallax({"diff", "six.json", "seven.json"});
+  CHECK(holds(listed.out, "initial states: uniform of 7"));
+  for (const auto& wrong :
+       {drawn("fair", 6), drawn("uniform", 0), drawn("uniform", "6"), Json::array()}) {
+    rates("wrong.json", wrong);
+    CHECK(gate.parallax({"diff", "wrong.json", "one.json"}).code == 3);
+  }
+}
+
 TEST_CASE("10: lists of traces, of which it matters whether they are whole, and plans") {
   const Gate gate;
   gate.write("old.e", kTurkey);
