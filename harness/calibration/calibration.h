@@ -11,6 +11,7 @@
 #include "compiler/base/diagnostic.h"
 #include "harness/calibration/synthetic_simulator.h"
 #include "harness/confidence/criterion_spec.h"
+#include "harness/confidence/spending.h"
 
 namespace parallax::harness {
 
@@ -25,11 +26,11 @@ struct CalibratedCriterion {
   std::function<std::unique_ptr<ConfidenceCriterion>(const CriterionSpec&)> make = {};
 };
 
-/// A simulator, and of two traces how they share the error.
+/// A simulator, and how its traces are claimed where there are two.
 struct CalibratedWorld {
   SyntheticKind kind = SyntheticKind::kByStart;
   std::optional<Family> family;  // of two traces; none: there is one
-  bool is_counted = true;        // of two traces that share the error: their number is known
+  bool is_counted = true;        // where one of two is left out: their number is known
   std::string name;
 };
 
@@ -63,14 +64,35 @@ struct CalibrationOptions {
 std::vector<CalibratedCriterion> calibrated_criteria(double confidence_level, double epsilon);
 std::vector<CalibratedWorld> calibrated_worlds();
 
+/// The probability of a run of this trace, from 1, to go wrong: epsilon itself, so that every claim
+/// is false. Where the first of two traces is left out it is the bound that the second one's share
+/// of the error supports after the planned clean runs, as that is claimed then.
+double calibrated_probability(const CalibratedCriterion& criterion, const CalibratedWorld& world,
+                              int trace);
+
+/// The end of one trace of a loop.
+struct CalibratedTrace {
+  bool is_discrepancy = false;
+  bool passed = false;            // the criterion was met
+  CertifiedBound stated, shared;  // as FamilyMember has them
+  double probability = 0.0;       // of a run to go wrong
+};
+
+/// Is what is claimed of these traces false? One trace, and each one of `per-trace`, is claimed
+/// where it passed; several are claimed together, as family_claim does.
+bool is_false_claim(const CalibratedCriterion& criterion, const CalibratedWorld& world,
+                    const std::vector<CalibratedTrace>& traces);
+
+/// Is the criterion measured in that world? That of the paper is about one initial state.
+bool is_measured(const CalibratedCriterion& criterion, const CalibratedWorld& world);
+
 /// The share of loops in which a false claim is allowed, by the wording of the claim: 1-C, or twice
 /// that if `clean-runs` may have to say so after a loss, and if each of two traces is claimed by
 /// itself. None: the criterion is not judged.
 std::optional<double> allowed_share(const CalibratedCriterion& criterion,
                                     const CalibratedWorld& world);
 
-/// One cell by loops in this process: the law of the campaign, without campaign and simulator. The
-/// discrepancy probability is epsilon itself, so every claim of the criterion is false.
+/// One cell by loops in this process: the law of the campaign, without campaign and simulator.
 CalibrationCell in_process_cell(const CalibratedCriterion& criterion, const CalibratedWorld& world,
                                 const CalibrationOptions& options, std::int64_t loops);
 

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
@@ -23,7 +25,7 @@ constexpr const char* kSyntheticScenario = R"(model: domain.e
 horizon: 1
 simulator: {command: [synthetic]}
 regions:
-  cells: {goal: {x: [0, 1]}, start: {x: [3, 4]}}
+  cells: {goal: {x: [0, 1]}, start: {x: [3, 4]}, second: {x: [4, 5]}, third: {x: [5, 6]}}
   gaps: allowed
 mapping:
   BoxIn(region): {inside: region, body: box}
@@ -33,36 +35,61 @@ actions:
 limits: {max_lost_in_a_row: 1000}
 )";
 
-/// One push for each trace.
+constexpr std::array<const char*, kSyntheticStates> kStartFluents = {
+    "BoxIn(start)", "BoxIn(second)", "BoxIn(third)"};
+
+/// One push for each trace, from one initial state or from any of them.
 class SyntheticTraces final : public TraceFeed {
  public:
-  explicit SyntheticTraces(std::int64_t count) : count_(count), symbols_(table()) {}
+  SyntheticTraces(std::int64_t count, bool has_states)
+      : count_(count), has_states_(has_states), symbols_(table()) {}
 
   base::Result<std::optional<CampaignTrace>> next() override {
     if (given_ == count_) return std::optional<CampaignTrace>();
-    const std::string event = ++given_ == 1 ? "PushLeft()" : "PushRight()";
-    CampaignTrace out;
-    out.number = given_;
-    out.key = event;
-    auto names = std::make_shared<compiler::SymbolTable>(*symbols_);
-    const std::vector<std::string> start = {"BoxIn(start)"}, goal = {"BoxIn(goal)"};
-    out.points.push_back(runtime::point_of_names(start, std::vector{event}, *names));
-    out.points.push_back(runtime::point_of_names(goal, {}, *names));
-    out.symbols = std::move(names);
-    out.plan.emplace_back();
-    return std::optional<CampaignTrace>(std::move(out));
+    return std::optional(trace(++given_, kStartFluents.front()));
   }
   std::string exploration() const override { return "all traces explored"; }
   runtime::Symbols symbols() const override { return symbols_; }
 
+  base::Result<std::optional<TraceStarts>> starts(
+      const CampaignTrace& trace, std::span<const compiler::FluentId> fluents) override {
+    if (!has_states_) return TraceFeed::starts(trace, fluents);
+    TraceStarts out;
+    for (const auto* fluent : kStartFluents) out.states.push_back({*symbols_->fluent(fluent)});
+    return std::optional(std::move(out));
+  }
+  base::Result<std::pair<base::Known, std::optional<CampaignTrace>>> from(
+      const CampaignTrace& of, std::span<const compiler::FluentId>,
+      const std::vector<compiler::FluentId>& state) override {
+    return std::pair(base::Known::kYes,
+                     std::optional(trace(of.number, symbols_->name(state.front()))));
+  }
+
  private:
+  CampaignTrace trace(std::int64_t number, const std::string& starts_in) const {
+    const std::string event = number == 1 ? "PushLeft()" : "PushRight()";
+    CampaignTrace out;
+    out.number = number;
+    out.key = event;
+    auto names = std::make_shared<compiler::SymbolTable>(*symbols_);
+    const std::vector<std::string> start = {starts_in}, goal = {"BoxIn(goal)"};
+    out.points.push_back(runtime::point_of_names(start, std::vector{event}, *names));
+    out.points.push_back(runtime::point_of_names(goal, {}, *names));
+    out.symbols = std::move(names);
+    out.plan.emplace_back();
+    if (has_states_) out.other_initial_states = base::Known::kYes;
+    return out;
+  }
+
   static runtime::Symbols table() {
     auto out = std::make_shared<compiler::SymbolTable>();
-    for (const auto* fluent : {"BoxIn(goal)", "BoxIn(start)"}) out->add_fluent(fluent);
+    out->add_fluent("BoxIn(goal)");
+    for (const auto* fluent : kStartFluents) out->add_fluent(fluent);
     return out;
   }
 
   std::int64_t count_, given_ = 0;
+  bool has_states_;
   runtime::Symbols symbols_;
 };
 
@@ -114,11 +141,13 @@ base::Result<CalibrationCell> protocol_cell(const CalibratedCriterion& criterion
     campaign.stop = options.stop;
     ProcessOptions process;
     process.command = options.command;
-    const auto more = synthetic_arguments(
-        {world.kind, criterion.spec.epsilon, campaign.seed, folder.path() / "draws", true});
+    const int count = world.family ? 2 : 1;
+    const auto more =
+        synthetic_arguments({world.kind, calibrated_probability(criterion, world, count),
+                             campaign.seed, folder.path() / "draws", true});
     process.command.insert(process.command.end(), more.begin(), more.end());
     process.stop = options.stop;
-    SyntheticTraces traces(world.family ? 2 : 1);
+    SyntheticTraces traces(count, has_states(world.kind));
     const auto result = run_campaign(
         *scenario, traces, [&] { return std::make_unique<ProcessSimulator>(process); }, campaign,
         own, told);
@@ -128,12 +157,15 @@ base::Result<CalibrationCell> protocol_cell(const CalibratedCriterion& criterion
         return sink.error_about(diagnostic.code, criterion.name, diagnostic.message);
       }
     }
-    bool is_false = false;
+    std::vector<CalibratedTrace> ends;
     for (const auto& trace : result->traces) {
-      is_false = is_false || trace.verdict == CampaignVerdict::kNoDiscrepancy;
+      ends.push_back(
+          {trace.verdict == CampaignVerdict::kDiscrepancy, trace.is_decided, trace.stated,
+           trace.shared,
+           calibrated_probability(criterion, world, static_cast<int>(trace.trace->number))});
     }
     ++cell.loops;
-    cell.false_claims += is_false ? 1 : 0;
+    cell.false_claims += is_false_claim(criterion, world, ends) ? 1 : 0;
     runs += result->simulations;
     std::error_code ignored;
     fs::remove_all(campaign.run_dir, ignored);

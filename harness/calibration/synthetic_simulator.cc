@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 #include "compiler/base/descriptor.h"
@@ -64,8 +65,15 @@ std::uint64_t SyntheticSimulator::next_draw() {
   return ::write(file.get(), "x", 1) == 1 && size >= 0 ? static_cast<std::uint64_t>(size) : 0;
 }
 
+/// Cells are one metre wide, one for each initial state.
+double SyntheticSimulator::in_cell_m() const {
+  const double x = start_m_ - kSyntheticStart_m;
+  return x - std::floor(x);
+}
+
 bool SyntheticSimulator::goes_wrong(std::string_view action) {
-  const double p = options_.probability, x = start_m_ - kSyntheticStart_m;
+  const double p = options_.probability, x = in_cell_m();
+  const bool second = action == "push-right";
   switch (options_.kind) {
     case SyntheticKind::kByStart:
     case SyntheticKind::kLosing:
@@ -78,10 +86,16 @@ bool SyntheticSimulator::goes_wrong(std::string_view action) {
     case SyntheticKind::kNoisy:
     case SyntheticKind::kCrashFirst:
       return own_draw(2, next_draw()) < p;
+    case SyntheticKind::kOneSound:
+      return second && x < p;
+    case SyntheticKind::kOneFailing:
+      return !second || x < p;
+    case SyntheticKind::kStates:
+    case SyntheticKind::kLosingStates:
+      return x < p * std::floor(start_m_ - kSyntheticStart_m);
     case SyntheticKind::kTwoTraces:
       break;
   }
-  const bool second = action == "push-right";
   const double draw = own_draw(3, pushes_[second ? 1 : 0]++);
   return second ? draw >= 1.0 - p : draw < p;
 }
@@ -91,11 +105,12 @@ Outcome SyntheticSimulator::act(std::string_view action, const State&, double) {
     return {SimStatus::kUnsupported, "no such action", 0.0, {}};
   }
   if (!goes_wrong(action)) {
-    box_m_ = synthetic_end_m(start_m_ - kSyntheticStart_m);
+    box_m_ = synthetic_end_m(in_cell_m());
     return {SimStatus::kOk, "", 0.1, {}};
   }
   if (options_.kind == SyntheticKind::kCrashFirst && options_.ends_process) ::_exit(1);
-  if (options_.kind == SyntheticKind::kCrashFirst || options_.kind == SyntheticKind::kLosing) {
+  if (options_.kind == SyntheticKind::kCrashFirst || options_.kind == SyntheticKind::kLosing ||
+      options_.kind == SyntheticKind::kLosingStates) {
     return {SimStatus::kLost, "numbers blew up", 0.0, {}};
   }
   if (options_.kind == SyntheticKind::kSlow) std::this_thread::sleep_for(kSlowRun);

@@ -13,17 +13,27 @@ namespace parallax::harness {
 /// The cause of failing runs in a synthetic simulator, and how a failure shows. Each kind fails
 /// with a probability that is known exactly.
 enum class SyntheticKind : std::uint8_t {
-  kByStart,     // in a part of the start region
-  kBySeed,      // by the seed that it is handed
-  kNoisy,       // by random numbers of its own; it takes no seed
-  kRefusing,    // as by start; half of all starts are refused
-  kLosing,      // as by start, and then it says that it is lost; the same again when repeated
-  kCrashFirst,  // as noisy, and then the process ends instead of showing it; it takes no seed
-  kSlow,        // as by start; runs that go wrong take longer than others
-  kTwoTraces,   // run i of the second trace goes wrong only where that of the first does not
+  kByStart,       // in a part of the start region
+  kBySeed,        // by the seed that it is handed
+  kNoisy,         // by random numbers of its own; it takes no seed
+  kRefusing,      // as by start; half of all starts are refused
+  kLosing,        // as by start, and then it says that it is lost; the same again when repeated
+  kCrashFirst,    // as noisy, and then the process ends instead of showing it; it takes no seed
+  kSlow,          // as by start; runs that go wrong take longer than others
+  kTwoTraces,     // run i of the second trace goes wrong only where that of the first does not
+  kOneSound,      // as by start in the second trace; the first never goes wrong
+  kOneFailing,    // as by start in the second trace; the first always goes wrong
+  kStates,        // three initial states; p is the mean, and none, as much and twice that is theirs
+  kLosingStates,  // likewise, and then it says that it is lost
 };
-inline constexpr std::array<std::string_view, 8> kSyntheticWords = {
-    "by-start", "by-seed", "noisy", "refusals", "losses", "crash-first", "slow", "two-traces"};
+inline constexpr std::array<std::string_view, 12> kSyntheticWords = {
+    "by-start", "by-seed",    "noisy",     "refusals",    "losses", "crash-first",
+    "slow",     "two-traces", "one-sound", "one-failing", "states", "losing-states"};
+constexpr bool has_states(SyntheticKind kind) {
+  return kind == SyntheticKind::kStates || kind == SyntheticKind::kLosingStates;
+}
+/// So many initial states they have, a metre apart.
+inline constexpr std::int64_t kSyntheticStates = 3;
 inline std::string_view to_string(SyntheticKind kind) {
   return kSyntheticWords[static_cast<std::size_t>(kind)];
 }
@@ -32,7 +42,7 @@ std::optional<SyntheticKind> synthetic_kind(std::string_view word);
 /// Where a box lies at first [m], where `push-left` and `push-right` bring it to, and what else
 /// there is between them. A push that goes wrong leaves it where it is.
 inline constexpr double kSyntheticStart_m = 3.0, kSyntheticGoal_m = 0.0;
-/// The end position of the box for a start, `x_m` of its cell's lower end.
+/// The end position of the box for a start, `x_m` from its cell's lower end.
 double synthetic_end_m(double x_m);
 
 /// One start region, one action, and a probability of going wrong.
@@ -58,6 +68,7 @@ class SyntheticSimulator final : public Simulator {
   double own_draw(std::uint64_t stream, std::uint64_t index) const;
   std::uint64_t next_draw();
   bool goes_wrong(std::string_view action);
+  double in_cell_m() const;
 
   Options options_;
   double start_m_ = 0.0, box_m_ = 0.0;
