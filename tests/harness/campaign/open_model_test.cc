@@ -148,15 +148,5 @@ TEST_CASE("the paper's criterion does not stop for runs with several end states"
   CHECK(result->verdict == CampaignVerdict::kInconclusive);
 }
 
-TEST_CASE("other initial states are told of, as only the first is sampled") {
-  Bench bench;
-  bench.openness.initial_states = true;
-  const auto result = bench.run();
-  REQUIRE(result.has_value());
-  CHECK(says(result->traces[0],
-             "other initial states lead to the same events; only the first, in "
-             "the model's order, was sampled (`run --split-initial` samples each)"));
-}
-
 }  // namespace
 }  // namespace parallax::harness::test
