@@ -36,6 +36,7 @@ class Estimator {
     result.fixed_runs = runs_are_fixed();
     result.until_width = options_.until_width;
     result.until_known = options_.until_known;
+    result.indifference = options_.indifference;
     result.comparison = scenario_.comparison();
     const auto visit = [&](CampaignTrace trace) -> base::Result<bool> {
       bool complete = true;
@@ -77,6 +78,8 @@ class Estimator {
     LawCounter law;
     law.name(trial->plan().sampler);
     trial->draw_independently();
+    std::optional<SequentialTest> test;
+    if (options_.indifference) test.emplace(*options_.indifference);
     bool enough = false;
     while (complete && !enough && trial->next_sample() <= options_.runs) {
       trial->submit_to(last_wanted(trial->next_sample()));
@@ -88,7 +91,9 @@ class Estimator {
         const auto& plan = trial->plan_of((*sample)->record);
         law.add(plan.sampler, plan.campaign_seed, plan.trace_key, (*sample)->record);
         count(*trial, **sample, rates, causes);
+        if (test) test->add(result_of(**sample));
       }
+      if (test) rates.sequential = test->answer();
       enough = is_narrow(rates) || is_known(rates);
       report_progress(trace.number, trial->next_sample() - 1);
     }
@@ -119,9 +124,24 @@ class Estimator {
   }
 
   bool is_known(const TraceRates& rates) const {
+    if (options_.indifference) return rates.sequential != SequentialAnswer::kOpen;
     if (!options_.until_known) return false;
     const RateCounts counts{rates.runs + rates.lost, rates.any.count, rates.lost, false};
     return weigh(*options_.until_known, counts) != Evidence::kTooLittle;
+  }
+
+  static RunResult result_of(const TrialSample& sample) {
+    switch (sample.verdict) {
+      case SampleVerdict::kLost:
+      case SampleVerdict::kLostTooOften:
+        return RunResult::kLost;
+      case SampleVerdict::kAsPredicted:
+      case SampleVerdict::kAdmitted:
+        return RunResult::kClean;
+      case SampleVerdict::kDiscrepancy:
+        break;
+    }
+    return RunResult::kFailure;
   }
 
   void report_progress(std::int64_t trace, std::int64_t done) const {
@@ -197,6 +217,11 @@ class Estimator {
 }  // namespace
 
 Evidence RatesResult::evidence(const TraceRates& trace) const {
+  if (indifference) {
+    const bool is_below = trace.sequential == SequentialAnswer::kBelow;
+    if (!is_below && trace.sequential != SequentialAnswer::kAbove) return Evidence::kTooLittle;
+    return is_below == (until_known->upper < 1.0) ? Evidence::kSupports : Evidence::kRefutes;
+  }
   return weigh(*until_known, {trace.runs + trace.lost, trace.any.count, trace.lost, false});
 }
 

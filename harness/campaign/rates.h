@@ -8,8 +8,23 @@
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/start_law.h"
 #include "harness/confidence/rate_evidence.h"
+#include "harness/confidence/sequential_test.h"
+#include "harness/confidence/value_summary.h"
 
 namespace parallax::harness {
+
+/// A number that runs report, over the runs of a trace: a margin, or the duration.
+struct ReportedValue {
+  std::string name;                     // as asked for: "duration", "goal", "2.goal"
+  std::int64_t without = 0;             // runs seen to their end that did not report it
+  std::optional<ValueSummary> summary;  // none: no run reported it
+};
+
+/// How one run ended, and where it began.
+struct RunOutcome {
+  std::string outcome;  // "clean", "admitted", "discrepancy", "lost"
+  std::string start;    // hash of the start's variables, 16 hexadecimal digits
+};
 
 struct TraceRates {
   std::int64_t number = 0;
@@ -26,6 +41,9 @@ struct TraceRates {
   std::string left_out;           // the part of the start region that is never drawn
   CauseRate any;                  // any discrepancy at all
   std::vector<CauseRate> causes;  // most frequent first
+  SequentialAnswer sequential = SequentialAnswer::kOpen;  // of `indifference`
+  std::vector<ReportedValue> values;                      // where they were asked for
+  std::vector<RunOutcome> outcomes;                       // likewise, by sample number
 };
 
 struct RatesOptions {
@@ -39,6 +57,8 @@ struct RatesOptions {
   /// `runs` are the most, and a trace ends as soon as it is known whether the rate of any
   /// discrepancy is as claimed, with the claim's confidence. Intervals hold whenever one looks.
   std::optional<RateClaim> until_known;
+  /// With a claim of one side: it is tested by SequentialTest, up to the end of this region.
+  std::optional<IndifferenceRegion> indifference;
   double confidence = 0.95;  // of each interval
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const CampaignProgress&)> progress;  // called in the caller's thread
@@ -54,11 +74,13 @@ struct RatesResult {
   bool fixed_runs = true;
   double until_width = 0.0;  // what was asked for, as in RatesOptions
   std::optional<RateClaim> until_known;
+  std::optional<IndifferenceRegion> indifference;
   Comparison comparison = Comparison::kEveryStep;
   bool complete = true;  // false: stopped, or the simulator was lost too often
   std::vector<TraceRates> traces;
 
-  /// Weighs the runs of a trace as evidence for or against `until_known`.
+  /// Weighs the runs of a trace as evidence for or against `until_known`; of `indifference` it is
+  /// the answer of the sequential test.
   Evidence evidence(const TraceRates& trace) const;
   /// Did the runs end before the interval was as narrow as asked?
   bool is_too_wide(const TraceRates& trace) const;

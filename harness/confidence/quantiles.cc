@@ -165,6 +165,18 @@ double beta_quantile(double p, double a, double b) {
       0.0, 1.0);
 }
 
+double binomial_at_most(std::int64_t k, std::int64_t n, double p) {
+  if (k >= n) return 1.0;
+  if (k < 0) return 0.0;
+  return incomplete_beta(static_cast<double>(n - k), static_cast<double>(k) + 1.0, 1.0 - p);
+}
+
+double binomial_at_least(std::int64_t k, std::int64_t n, double p) {
+  if (k <= 0) return 1.0;
+  if (k > n) return 0.0;
+  return incomplete_beta(static_cast<double>(k), static_cast<double>(n - k) + 1.0, p);
+}
+
 double student_t_cdf(double t, double degrees_of_freedom) {
   PARALLAX_REQUIRE(degrees_of_freedom > 0.0, "positive degrees of freedom");
   const double tail = student_t_tail(std::abs(t), degrees_of_freedom);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 namespace parallax::harness {
 
 /// All to about 1e-10 or better, relative to the quantile and to the smaller tail.
@@ -20,6 +22,10 @@ double incomplete_beta_fraction(double a, double b, double x);
 double log_beta(double a, double b);
 /// The x with I_x(a, b) = p, p in [0, 1].
 double beta_quantile(double p, double a, double b);
+
+/// P(X <= k) and P(X >= k) for X binomial, n draws with probability p in [0, 1].
+double binomial_at_most(std::int64_t k, std::int64_t n, double p);
+double binomial_at_least(std::int64_t k, std::int64_t n, double p);
 
 /// Student's t with `degrees_of_freedom` > 0.
 double student_t_cdf(double t, double degrees_of_freedom);

@@ -24,29 +24,16 @@
 namespace parallax::harness {
 namespace {
 
-/// P(X <= k) of n draws with probability p.
-double at_most(std::int64_t k, std::int64_t n, double p) {
-  if (k >= n) return 1.0;
-  if (k < 0) return 0.0;
-  return incomplete_beta(static_cast<double>(n - k), static_cast<double>(k) + 1.0, 1.0 - p);
-}
-
-double at_least(std::int64_t k, std::int64_t n, double p) {
-  if (k <= 0) return 1.0;
-  if (k > n) return 0.0;
-  return incomplete_beta(static_cast<double>(k), static_cast<double>(n - k) + 1.0, p);
-}
-
 /// Does this number of failures show that the rate is below the bound?
 bool shows_below(std::int64_t failures, const RateCounts& of, double bound, double tail) {
   if (bound >= 1.0) return true;
-  return of.fixed ? at_most(failures, of.runs, bound) <= tail
+  return of.fixed ? binomial_at_most(failures, of.runs, bound) <= tail
                   : log_mixture_wealth(failures, of.runs, bound) >= -std::log(tail);
 }
 
 bool shows_above(std::int64_t failures, const RateCounts& of, double bound, double tail) {
   if (bound <= 0.0) return true;
-  return of.fixed ? at_least(failures, of.runs, bound) <= tail
+  return of.fixed ? binomial_at_least(failures, of.runs, bound) <= tail
                   : shows_below(of.runs - failures, of, 1.0 - bound, tail);
 }
 

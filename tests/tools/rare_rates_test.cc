@@ -17,7 +17,8 @@ TEST_CASE("rare rates: bad input") {
   const CliFixture cli;
   for (const std::string option :
        {"--plot=p.html", "--samples=s.csv", "--cause-kinds", "--until-width=0.1",
-        "--until-below=0.1", "--until-above=0.1", "--runs=999"}) {
+        "--until-below=0.1", "--until-above=0.1", "--runs=999", "--indifference=0.1", "--mean=goal",
+        "--outcomes"}) {
     CAPTURE(option);
     const auto ran = cli.parallax({"rates", kScenario, "--method", "importance", option});
     CHECK(ran.code == 2);

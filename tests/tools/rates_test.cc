@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
@@ -79,6 +80,134 @@ TEST_CASE("what the runs were to go on for is told, or that they ended before") 
   CHECK(text.code == 4);
   CHECK(text.out.find("not as narrow as asked, 1 points; give more --runs") != std::string::npos);
   CHECK(rates({"--until-width", "0.99", "--runs", "60"}).first == 0);
+}
+
+TEST_CASE("a sequential test answers beyond its indifference region, or says that it did not") {
+  const CliFixture cli;
+  const auto rates = [&](std::vector<std::string> more, int code) {
+    std::vector<std::string> all = {"rates", "edge.yaml"};
+    all.insert(all.end(), more.begin(), more.end());
+    return json_of(cli, all, code)["traces"][0];
+  };
+  // About a third of the starts go wrong.
+  const auto below = rates({"--until-below", "0.9", "--indifference", "0.2"}, 0);
+  CHECK(below["claim"]["answer"] == "below");
+  CHECK(below["claim"]["holds"] == true);
+  CHECK(below["claim"]["test"] == "sequential-probability-ratio");
+  CHECK(below["claim"]["errors"] == Json{{"below", 0.05}, {"above", 0.05}});
+  CHECK(below["claim"]["indifference"][0].get<double>() == doctest::Approx(0.7));
+  CHECK(below["claim"]["indifference"][1].get<double>() == doctest::Approx(0.9));
+  // The runs end where the likelihood ratio leaves (1/20, 20), and not before.
+  const auto log_ratio = [](int failures, int runs) {
+    return failures * std::log(0.9 / 0.7) + (runs - failures) * std::log(0.1 / 0.3);
+  };
+  const int runs = below["runs"], failures = below["any"]["count"];
+  CHECK(log_ratio(failures, runs) <= -std::log(20.0));
+  CHECK(log_ratio(failures, runs - 1) > -std::log(20.0));  // the last run was clean
+  const auto above = rates({"--until-above", "0.02", "--indifference", "0.05"}, 0);
+  CHECK(above["claim"]["answer"] == "above");
+  CHECK(above["claim"]["holds"] == true);
+  const auto not_below = rates({"--until-below", "0.07", "--indifference", "0.05"}, 0);
+  CHECK(not_below["claim"]["answer"] == "above");
+  CHECK(not_below["claim"]["holds"] == false);
+  const auto open = rates({"--until-below", "0.4", "--indifference", "0.1", "--runs", "3"}, 4);
+  CHECK(open["claim"]["answer"] == "undecided");
+  CHECK(open["claim"]["holds"].is_null());
+  const auto text = cli.parallax(
+      {"rates", "edge.yaml", "--until-below", "0.4", "--indifference", "0.1", "--runs", "3"});
+  CHECK(text.out.find("undecided between below 40 % and above 30 %") != std::string::npos);
+  for (const std::vector<std::string>& wrong :
+       {std::vector<std::string>{"--indifference", "0.1"},
+        {"--until-below", "0.1", "--indifference", "0.1"},
+        {"--until-above", "0.95", "--indifference", "0.1"},
+        {"--until-below", "0.5", "--until-above", "0.2", "--indifference", "0.1"}}) {
+    std::vector<std::string> words = {"rates", "edge.yaml"};
+    words.insert(words.end(), wrong.begin(), wrong.end());
+    const auto result = cli.parallax(words);
+    CHECK(result.code == 2);
+    CHECK(result.err.find("--indifference") != std::string::npos);
+  }
+}
+
+/// The column of a table with these names in its first line.
+std::vector<double> column(const std::string& csv, const std::string& name) {
+  std::vector<std::vector<std::string>> rows;
+  std::size_t at = 0;
+  while (at < csv.size()) {
+    const auto end = csv.find('\n', at);
+    rows.emplace_back();
+    for (std::size_t from = at; from <= end;) {
+      const auto comma = std::min(csv.find(',', from), end);
+      rows.back().push_back(csv.substr(from, comma - from));
+      from = comma + 1;
+    }
+    at = end + 1;
+  }
+  std::vector<double> out;
+  for (std::size_t c = 0; c < rows.front().size(); ++c) {
+    if (rows.front()[c] != name) continue;
+    for (std::size_t r = 1; r < rows.size(); ++r) out.push_back(std::stod(rows[r][c]));
+  }
+  return out;
+}
+
+TEST_CASE("means, quantiles and outcomes are those of the table of simulations") {
+  const CliFixture cli;
+  const auto result =
+      json_of(cli, {"rates", "edge.yaml", "--runs", "20", "--mean", "duration", "--mean", "0.goal",
+                    "--mean", "goal", "--outcomes", "--samples", "edge.csv"});
+  const auto csv = cli.read("edge.csv");
+  const auto& trace = result["traces"][0];
+  REQUIRE(trace["values"].size() == 3);
+  const auto check = [&](const Json& value, std::vector<double> expected) {
+    CAPTURE(value.dump());
+    REQUIRE(expected.size() == 20);
+    std::sort(expected.begin(), expected.end());
+    double sum = 0.0;
+    for (const double one : expected) sum += one;
+    CHECK(value["runs"] == 20);
+    CHECK(value["without"] == 0);
+    CHECK(value["lost"] == 0);
+    CHECK(value["mean"]["value"].get<double>() == doctest::Approx(sum / 20));
+    CHECK(value["mean"]["interval"] == "student-t");
+    CHECK(value["least"] == expected.front());
+    CHECK(value["most"] == expected.back());
+    const auto& median = value["quantiles"][1];
+    CHECK(median["probability"] == 0.5);
+    CHECK(median["value"] == expected[9]);
+    // P(Bin(20, 1/2) <= 5) = 0.0207 is the largest tail within 0.025: the 6th and 15th values.
+    CHECK(binomial_cdf(5, 20, 0.5) <= 0.025);
+    CHECK(binomial_cdf(6, 20, 0.5) > 0.025);
+    CHECK(median["lower"] == expected[5]);
+    CHECK(median["upper"] == expected[14]);
+    CHECK(value["quantiles"][0]["lower"].is_null());
+  };
+  check(trace["values"][0], column(csv, "sim_time_s"));
+  const auto first = column(csv, "margin.0.goal"), second = column(csv, "margin.2.goal");
+  check(trace["values"][1], first);
+  std::vector<double> least;
+  for (std::size_t i = 0; i < first.size(); ++i) least.push_back(std::min(first[i], second[i]));
+  check(trace["values"][2], least);
+  REQUIRE(trace["samples"].size() == 20);
+  int failures = 0;
+  for (const auto& sample : trace["samples"])
+    failures += sample["outcome"] == "discrepancy" ? 1 : 0;
+  CHECK(failures == trace["any"]["count"]);
+  CHECK(trace["samples"][0]["start"] != trace["samples"][1]["start"]);
+
+  const auto text = cli.parallax({"rates", "edge.yaml", "--runs", "6", "--mean", "duration"});
+  CHECK(text.out.find("duration [s] in 6 runs") != std::string::npos);
+  CHECK(text.out.find("Student's t, approximate") != std::string::npos);
+  const auto none = cli.parallax({"rates", "edge.yaml", "--runs", "2", "--mean", "gaol"});
+  CHECK(none.code == 2);
+  CHECK(none.out.find("gaol: no run reported it") != std::string::npos);
+  CHECK(none.err.find("there is `duration`, and of margins goal, grasp_offset") !=
+        std::string::npos);
+  CHECK(cli.parallax({"rates", "edge.yaml", "--mean", "goal", "--until-width", "0.2"}).code == 2);
+  // Nobody asked: nothing is added.
+  const auto plain = json_of(cli, {"rates", "edge.yaml", "--runs", "2"})["traces"][0];
+  CHECK_FALSE(plain.contains("values"));
+  CHECK_FALSE(plain.contains("samples"));
 }
 
 TEST_CASE("counts by cause add up to all discrepancies, the most frequent first") {

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -8,6 +10,7 @@
 #include "compiler/base/file_io.h"
 #include "harness/campaign/rare_rates.h"
 #include "harness/campaign/rates.h"
+#include "harness/campaign/row_statistics.h"
 #include "harness/report/report.h"
 #include "tools/app/evidence.h"
 #include "tools/app/scenario_check.h"
@@ -37,6 +40,9 @@ struct RateOptions {
   std::string samples, plot;
   bool cause_kinds = false;
   double below = 1.0, above = 0.0;  // of --until-below, --until-above
+  double indifference = 0.0;        // 0: not given
+  std::vector<std::string> values;  // of --mean
+  bool outcomes = false;
   LauncherOptions launcher;
 };
 
@@ -81,6 +87,9 @@ base::Status check_method(const RateOptions& options, base::DiagnosticSink& sink
   const std::pair<const char*, bool> asked[] = {{"--until-width", options.rates.until_width > 0.0},
                                                 {"--until-below", options.below < 1.0},
                                                 {"--until-above", options.above > 0.0},
+                                                {"--indifference", options.indifference > 0.0},
+                                                {"--mean", !options.values.empty()},
+                                                {"--outcomes", options.outcomes},
                                                 {"--cause-kinds", options.cause_kinds},
                                                 {"--samples", !options.samples.empty()},
                                                 {"--plot", !options.plot.empty()}};
@@ -94,6 +103,63 @@ base::Status check_method(const RateOptions& options, base::DiagnosticSink& sink
   return sink.error_about(
       codes::kUsage, "--runs",
       fmt::format("--method {} resolves nothing with fewer than {} runs", options.method, least));
+}
+
+/// Sets what ends the runs.
+base::Status set_end(const RateOptions& options, harness::RatesOptions& rates,
+                     base::DiagnosticSink& sink) {
+  const auto refuse = [&](const char* option, const char* why) {
+    return sink.error_about(codes::kUsage, option, why);
+  };
+  if (options.below <= options.above) {
+    return refuse("", "--until-above must be less than --until-below");
+  }
+  const bool has_upper = options.below<1.0, has_lower = options.above> 0.0;
+  if (has_upper || has_lower) {
+    rates.until_known = {options.above, options.below, rates.confidence};
+  }
+  if (options.indifference > 0.0) {
+    if (has_upper == has_lower) {
+      return refuse("--indifference", "give it with either --until-below or --until-above");
+    }
+    rates.indifference =
+        has_upper ? harness::IndifferenceRegion{options.below - options.indifference, options.below,
+                                                rates.confidence}
+                  : harness::IndifferenceRegion{options.above, options.above + options.indifference,
+                                                rates.confidence};
+    if (rates.indifference->lower <= 0.0 || rates.indifference->upper >= 1.0) {
+      return refuse("--indifference", "it must be smaller, so that the region lies within (0, 1)");
+    }
+  }
+  const bool is_open = rates.until_width > 0.0 || rates.until_known;
+  if (is_open && !options.values.empty()) {
+    return refuse("--mean",
+                  "its intervals are for a fixed number of runs; leave --until-... out, or --mean");
+  }
+  if (options.runs > 0) {
+    rates.runs = options.runs;
+  } else if (is_open) {
+    rates.runs = kMostRunsUntil;
+  }
+  return base::Unit{};
+}
+
+/// Reports a value of --mean that no run of any trace reported.
+base::Status check_values(const RateOptions& options, const std::vector<harness::SampleRow>& rows,
+                          const harness::RatesResult& result, base::DiagnosticSink& sink) {
+  for (std::size_t i = 0; i < options.values.size(); ++i) {
+    const auto is_known = [i](const auto& trace) { return trace.values[i].summary.has_value(); };
+    if (result.traces.empty() || !result.complete ||
+        std::any_of(result.traces.begin(), result.traces.end(), is_known)) {
+      continue;
+    }
+    const auto names = harness::margin_names(rows);
+    return sink.error_about(
+        codes::kUsage, "--mean",
+        fmt::format("no run reported `{}`; there is `duration`{}{}", options.values[i],
+                    names.empty() ? "" : ", and of margins ", fmt::join(names, ", ")));
+  }
+  return base::Unit{};
 }
 
 /// Uses a method for events that are too rare to be counted.
@@ -140,30 +206,22 @@ int run_rates(const RateOptions& given, Invocation& invocation) {
     return report_fleet(*workers, invocation) ? code : 0;
   }
   auto rates = options.rates;
-  if (options.below <= options.above) {
-    invocation.sink().error_about(codes::kUsage, "",
-                                  "--until-above must be less than --until-below");
-    return 0;
-  }
-  if (options.below < 1.0 || options.above > 0.0) {
-    rates.until_known = {options.above, options.below, rates.confidence};
-  }
-  if (options.runs > 0) {
-    rates.runs = options.runs;
-  } else if (rates.until_width > 0.0 || rates.until_known) {
-    rates.runs = kMostRunsUntil;
-  }
+  if (!set_end(options, rates, invocation.sink())) return 0;
   rates.stop = &stop_flag();
   rates.progress = progress_on_terminal(invocation.options());
   SampleOutput samples(options.samples);
   if (!samples.check(invocation) || !check_plot(options.plot, invocation)) return 0;
-  if (!options.plot.empty() || options.cause_kinds) samples.collect();
+  if (!options.plot.empty() || options.cause_kinds || !options.values.empty() || options.outcomes) {
+    samples.collect();
+  }
   rates.on_sample = samples.listener();
   auto result =
       harness::estimate_rates(loaded->scenario, traces, *simulator, rates, invocation.sink());
   if (rates.progress) clear_progress();
   if (!report_fleet(*workers, invocation) || !result || !samples.write(invocation)) return 0;
   if (options.cause_kinds) add_cause_kinds(samples.rows(), loaded->world != nullptr, *result);
+  if (options.outcomes) harness::add_outcomes(samples.rows(), *result);
+  harness::add_values(samples.rows(), options.values, *result);
   if (!options.plot.empty() &&
       !base::write_output(options.plot, rates_page(*result, samples.rows()), invocation.files(),
                           invocation.sink(), base::TextForm::kMarkup)) {
@@ -174,6 +232,8 @@ int run_rates(const RateOptions& given, Invocation& invocation) {
   } else {
     invocation.result(harness::rates_text(*result));
   }
+  // The error decides the exit code; what was counted is printed all the same.
+  if (!check_values(options, samples.rows(), *result, invocation.sink())) return 0;
   if (!result->complete || !result->is_answered()) return 4;
   return result->traces.empty() ? 1 : 0;
 }
@@ -190,8 +250,10 @@ Command rates_command() {
       "  parallax rates scenarios/two_regions/edge.yaml --runs 100 --json\n"
       "  parallax rates scenarios/two_regions/edge.yaml --until-width 0.2\n"
       "  parallax rates scenarios/two_regions/edge.yaml --until-below 0.1 --runs 400\n"
+      "  parallax rates edge.yaml --until-below 0.5 --indifference 0.1 --confidence 0.99\n"
       "  parallax rates scenarios/kitchen/plan3.yaml --runs 200 --plot rates.html --samples "
       "rates.csv\n"
+      "  parallax rates scenarios/kitchen/plan2.yaml --mean duration --mean goal\n"
       "  parallax rates scenarios/two_regions/edge.yaml --method importance --runs 1000\n"
       "Sample N starts as simulation N of `parallax run` with the same seed does.\n"
       "Exit codes: 0 estimated, 1 no trace, 4 stopped before all runs were made, or "
@@ -224,6 +286,17 @@ Command rates_command() {
               "Go on until it is known whether the rate is above this")
       .check(kShare);
   command
+      .option("--indifference", options->indifference,
+              "With --until-below P: test p >= P against p <= P - D, by Wald's sequential test")
+      .details(
+          "With --until-above P: p <= P against p >= P + D. Each answer is wrong with a "
+          "probability "
+          "of at most 1 less --confidence, and in between either may come (the indifference region "
+          "of Younes and Simmons 2002). The answer is the one that all results of lost runs would "
+          "lead to; where there is none, or --runs end before, it is undecided.")
+      .named_value("D")
+      .check(FiniteNumber{1e-6, 0.999});
+  command
       .option("--method", options->method,
               "How runs are drawn: counting, or for rare discrepancies importance or splitting")
       .details(
@@ -236,6 +309,19 @@ Command rates_command() {
   command.flag("--cause-kinds", options->cause_kinds,
                "Also tell what kind of cause each is: always, region, random or simulator");
   add_judging_options(command, options->judging);
+  command
+      .option("--mean", options->values,
+              "Also tell mean and quantiles of `duration` or a margin, with intervals; repeatable")
+      .details(
+          "duration is the simulated time of all actions in s. Of a margin the least one of a run "
+          "counts; EVENT.NAME is that of one event, numbered from 0. Intervals of quantiles hold "
+          "for "
+          "any distribution, that of the mean is Student's t. Each holds with --confidence.")
+      .named_value("NAME")
+      .list(ListForm::kOneEachTime);
+  command.flag(
+      "--outcomes", options->outcomes,
+      "Also list in --json how each run ended, for `diff --gate` of results with equal seeds");
   command.heading("How they run");
   command.option("--confidence", options->rates.confidence, "Confidence of each interval")
       .check(FiniteNumber{0.5, 0.999999})

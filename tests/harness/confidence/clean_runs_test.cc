@@ -40,6 +40,7 @@ TEST_CASE("clean runs: the number that excludes epsilon, table for 95 and 99 %")
     CHECK(runs_needed(0.95, epsilons[i]) == at_95[i]);
     CHECK(runs_needed(0.99, epsilons[i]) == at_99[i]);
   }
+  CHECK(runs_needed(0.999, 0.001) == 6905);
 }
 
 TEST_CASE("clean runs: all-traces levels of 3, 20 and 100 traces") {
