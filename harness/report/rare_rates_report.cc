@@ -4,7 +4,9 @@
 
 #include "compiler/base/json.h"
 #include "compiler/base/shown_text.h"
+#include "harness/campaign/start_words.h"
 #include "harness/confidence/rounding.h"
+#include "harness/report/law_json.h"
 #include "harness/report/report.h"
 
 namespace parallax::harness {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "harness/confidence/paired_runs.h"
 #include "harness/confidence/rate_evidence.h"
 #include "harness/confidence/rounding.h"
 #include "tools/diff/gate.h"
@@ -89,36 +90,78 @@ struct SharedError {
   double of_one() const { return error / static_cast<double>(tests); }
 };
 
-/// Fisher's exact test; anytime-valid bounds where a number of runs depends on its results. The
-/// shown p-value is multiplied by the number of tests.
+/// The evidence of an exact test, whose p-value is shown multiplied by the number of tests.
+GrowthEvidence exact_evidence(std::string_view test, double chance, const SharedError& shared) {
+  const bool grew = chance <= shared.of_one();
+  const auto p = harness::p_text(std::min(1.0, chance * static_cast<double>(shared.tests)));
+  return {grew, chance,
+          fmt::format("{}{}{}", grew ? fmt::format("{}, ", test) : "",
+                      shared.tests > 1 ? "adjusted " : "", p)};
+}
+
+/// Fisher's exact test; anytime-valid bounds where a number of runs depends on its results.
 GrowthEvidence weigh_growth(const RateCounts& before, const RateCounts& after,
                             const SharedError& shared) {
   if (before.fixed && after.fixed) {
-    const double chance = harness::fisher_worse(before, after);
-    const bool grew = chance <= shared.of_one();
-    const bool is_adjusted = shared.tests > 1;
-    const auto p = harness::p_text(std::min(1.0, chance * static_cast<double>(shared.tests)));
-    return {grew, chance,
-            fmt::format("{}{}{}", grew ? "Fisher's exact test, " : "",
-                        is_adjusted ? "adjusted " : "", p)};
+    return exact_evidence("Fisher's exact test", harness::fisher_worse(before, after), shared);
   }
   const bool grew = harness::is_surely_worse(before, after, 1.0 - shared.of_one());
   return {grew, grew ? 0.0 : 1.0,
           fmt::format("bounds that hold whenever one looks {}", grew ? "part" : "overlap")};
 }
 
-/// Judges the change between two counts of one trace.
-RuleOutcome weigh_change(const RateCounts& before, const RateCounts& after,
-                         const harness::GateRules::Worse& worse, const SharedError& shared,
-                         std::string& words) {
-  const double bound = excess_bound(before, after, worse.confidence);
+/// One trace before and after.
+struct RateChange {
+  RateCounts before, after;
+  /// Run by run, where both sides list as many runs of one seed and not all starts differ. That
+  /// does not depend on how the runs ended.
+  std::optional<harness::PairedRuns> pairs;
+  std::int64_t equal_starts = 0;
+};
+
+RateChange change_of(const RatesRevision& before, const RatesRevision& after,
+                     const RevisionRates& old, const RevisionRates& now) {
+  RateChange out{old.any, now.any, {}, 0};
+  const bool fixed = old.any.fixed && now.any.fixed;
+  if (!fixed || before.seed != after.seed || old.runs.size() != now.runs.size()) return out;
+  harness::PairedRuns pairs;
+  for (std::size_t i = 0; i < old.runs.size(); ++i) {
+    pairs.add(old.runs[i].result, now.runs[i].result);
+    out.equal_starts += old.runs[i].start == now.runs[i].start ? 1 : 0;
+  }
+  if (out.equal_starts > 0) out.pairs = pairs;
+  return out;
+}
+
+/// "20 of 100 before, 25 now; of 100 pairs, 98 with equal starts, 6 fail anew and 1 no longer"
+std::string change_text(const RateChange& change) {
+  auto out = change_text(change.before, change.after);
+  if (!change.pairs) return out;
+  using harness::RunResult;
+  const auto parted = change.pairs->discordant(RunResult::kFailure, RunResult::kClean);
+  out += fmt::format("; of {} pairs, {} with equal starts, {} fail anew and {} no longer",
+                     change.pairs->pairs(), change.equal_starts, parted.gained, parted.mended);
+  return out;
+}
+
+/// McNemar's exact test for pairs, or the tests for two independent counts.
+GrowthEvidence weigh_growth(const RateChange& change, const SharedError& shared) {
+  if (!change.pairs) return weigh_growth(change.before, change.after, shared);
+  return exact_evidence("McNemar's exact test", harness::mcnemar_worse(*change.pairs), shared);
+}
+
+/// Judges the change of one trace.
+RuleOutcome weigh_change(const RateChange& change, const harness::GateRules::Worse& worse,
+                         const SharedError& shared, std::string& words) {
+  const double bound = change.pairs ? harness::paired_excess_bound(*change.pairs, worse.confidence)
+                                    : excess_bound(change.before, change.after, worse.confidence);
   if (bound < worse.margin) {
-    words = fmt::format("{}: worse by less than {}", change_text(before, after),
+    words = fmt::format("{}: worse by less than {}", change_text(change),
                         harness::percent_up(worse.margin));
     return RuleOutcome::kKept;
   }
-  const auto evidence = weigh_growth(before, after, shared);
-  words = change_text(before, after);
+  const auto evidence = weigh_growth(change, shared);
+  words = change_text(change);
   words += evidence.grew ? fmt::format(": worse ({})", evidence.words)
                          : fmt::format(": may be worse by up to {} ({}); more runs would tell",
                                        harness::percent_up(bound), evidence.words);
@@ -133,8 +176,8 @@ RuleResult rate_rule(const RatesRevision& before, const RatesRevision& after,
   std::size_t broken = 0, open = 0;
   for (const auto& trace : before.traces) {
     std::string words;
-    const auto outcome =
-        weigh_change(trace.any, rates_for(after, trace.events)->any, worse, shared, words);
+    const auto change = change_of(before, after, trace, *rates_for(after, trace.events));
+    const auto outcome = weigh_change(change, worse, shared, words);
     broken += outcome == RuleOutcome::kBroken ? 1 : 0;
     open += outcome == RuleOutcome::kUndecided ? 1 : 0;
     if (outcome != RuleOutcome::kKept) {

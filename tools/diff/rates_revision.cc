@@ -46,6 +46,33 @@ std::optional<RevisionInitial> initial_of(const SortedJson& json) {
   return out;
 }
 
+/// The runs of the member `samples`; none: they are not runs with these counts.
+std::optional<std::vector<RevisionRates::Run>> runs_of(const SortedJson& samples,
+                                                       const harness::RateCounts& counts) {
+  if (!samples.is_array()) return std::nullopt;
+  std::vector<RevisionRates::Run> out;
+  std::int64_t failures = 0, lost = 0;
+  for (const auto& sample : samples) {
+    const auto outcome = at<std::string>(sample, "outcome");
+    auto start = at<std::string>(sample, "start");
+    if (!outcome || !start) return std::nullopt;
+    auto result = harness::RunResult::kClean;
+    if (outcome == "discrepancy") {
+      result = harness::RunResult::kFailure;
+      ++failures;
+    } else if (outcome == "lost") {
+      result = harness::RunResult::kLost;
+      ++lost;
+    } else if (outcome != "clean" && outcome != "admitted") {
+      return std::nullopt;
+    }
+    out.push_back({result, *std::move(start)});
+  }
+  const bool agrees =
+      std::ssize(out) == counts.runs && failures == counts.failures && lost == counts.lost;
+  return agrees ? std::optional(std::move(out)) : std::nullopt;
+}
+
 /// None: it is no such trace.
 std::optional<RevisionRates> rates_of(const SortedJson& json, bool fixed) {
   const auto events = at<std::string>(json, "events");
@@ -67,6 +94,11 @@ std::optional<RevisionRates> rates_of(const SortedJson& json, bool fixed) {
     const auto read = initial_of(*initial);
     if (!read) return std::nullopt;
     out.initial = *read;
+  }
+  if (const auto* samples = base::json_member(json, "samples")) {
+    auto listed = runs_of(*samples, out.any);
+    if (!listed) return std::nullopt;
+    out.runs = *std::move(listed);
   }
   std::int64_t sum = 0;
   for (const auto& cause : *causes) {

@@ -7,6 +7,7 @@
 
 #include "compiler/compare/fact.h"
 #include "harness/confidence/rate_evidence.h"
+#include "harness/confidence/run_result.h"
 #include "tools/app/context.h"
 
 namespace parallax::tools {
@@ -31,6 +32,11 @@ struct RevisionRates {
   std::vector<Cause> causes;
   std::string law{};  // by which starts were drawn, in words; empty: uniformly
   RevisionInitial initial{};
+  struct Run {
+    harness::RunResult result = harness::RunResult::kClean;
+    std::string start;  // hash of its variables
+  };
+  std::vector<Run> runs{};  // by sample number; empty: not listed (`rates --outcomes`)
 };
 
 struct RatesRevision {

@@ -282,6 +282,68 @@ TEST_CASE("a run that was lost is the worst for either answer") {
   CHECK(gate.hold(rules, "old.json", "new.json")["rates.worse"] == "not decidable");
 }
 
+TEST_CASE("runs of equal starts are compared in pairs") {
+  const Gate gate;
+  const auto rates = [&](const std::string& file, std::vector<std::string> words) {
+    words.insert(words.begin(), "rates");
+    words.insert(words.end(), {"--outcomes", "--json"});
+    const auto result = gate.parallax(words);
+    CAPTURE(result.err);
+    REQUIRE(result.code == 0);
+    gate.write(file, result.out);
+  };
+  // Sticks in a part of all starts: the same ones with the same seed, so that nothing is worse.
+  rates("old.json", {"two/sticks.yaml", "--runs", "100"});
+  rates("same.json", {"two/sticks.yaml", "--runs", "100"});
+  rates("other.json", {"two/sticks.yaml", "--runs", "100", "--seed", "2"});
+  const std::string rules = "rates: {worse: {margin: 0.05}}\n";
+  const auto same = gate.hold(rules, "old.json", "same.json");
+  CHECK(same["rates.worse"] == "kept");
+  CHECK(holds(same["rates.worse words"],
+              "of 100 pairs, 100 with equal starts, 0 fail anew and 0 no longer"));
+  const auto other = gate.hold(rules, "old.json", "other.json");
+  CHECK(other["rates.worse"] == "not decidable");
+  CHECK_FALSE(holds(other["rates.worse witness"], "pairs"));
+
+  // Six that fail anew: 30 of 100 against 36 of 100 say nothing, six pairs of six do.
+  const auto made = [&](const std::string& file, int failures, int moved, int lost) {
+    Json samples = Json::array();
+    for (int i = 0; i < 100; ++i) {
+      const char* outcome = i < failures ? "discrepancy" : i < failures + lost ? "lost" : "clean";
+      samples.push_back(
+          {{"outcome", outcome}, {"start", std::to_string(i + (i < moved ? 500 : 0))}});
+    }
+    gate.write(file, Json{{"status", "ok"},
+                          {"complete", true},
+                          {"compare", "every-step"},
+                          {"seed", 1},
+                          {"traces",
+                           {{{"events", "Go()"},
+                             {"runs", 100 - lost},
+                             {"lost", lost},
+                             {"any", {{"count", failures}}},
+                             {"causes", {{{"cause", "no"}, {"count", failures}}}},
+                             {"samples", samples}}}}}
+                         .dump());
+  };
+  made("thirty.json", 30, 0, 0);
+  made("six_more.json", 36, 1, 0);
+  const auto worse = gate.hold(rules, "thirty.json", "six_more.json");
+  CHECK(worse["rates.worse"] == "broken");
+  CHECK(holds(worse["rates.worse witness"], "McNemar's exact test, p = 0.016"));
+  CHECK(holds(worse["rates.worse witness"], "99 with equal starts, 6 fail anew and 0 no longer"));
+  made("other_starts.json", 36, 100, 0);
+  CHECK(gate.hold(rules, "thirty.json", "other_starts.json")["rates.worse"] == "not decidable");
+  // What was lost may have failed before.
+  made("thirty.json", 30, 0, 4);
+  CHECK(gate.hold(rules, "thirty.json", "six_more.json")["rates.worse"] == "not decidable");
+  // Runs that contradict the counts are no rates.
+  auto broken = Json::parse(gate.read("six_more.json"));
+  broken["traces"][0]["samples"][0]["outcome"] = "clean";
+  gate.write("broken.json", broken.dump());
+  CHECK(gate.parallax({"diff", "broken.json", "six_more.json"}).code == 3);
+}
+
 TEST_CASE("rates under different laws of starts are not compared") {
   const Gate gate;
   const auto rates = [&](const std::string& file, const Json& words) {
