@@ -85,7 +85,10 @@ bool is_false_claim(const CalibratedCriterion& criterion, const CalibratedWorld&
   for (const auto& one : traces) {
     if (!failed(one)) worst = std::max(worst, (leaves_out ? one.shared : one.stated).epsilon);
   }
-  if (worst <= epsilon) worst = epsilon;
+  // A criterion that is met says that it has excluded epsilon, whatever it has seen.
+  const bool all_passed = std::all_of(traces.begin(), traces.end(),
+                                      [](const CalibratedTrace& one) { return one.passed; });
+  if (worst <= epsilon || all_passed) worst = epsilon;
   return std::any_of(traces.begin(), traces.end(), [&](const CalibratedTrace& one) {
     return !failed(one) && one.probability >= worst;
   });
