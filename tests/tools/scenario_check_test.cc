@@ -62,6 +62,42 @@ TEST_CASE("check names ignored fluents that the model leaves open at the start")
   }
 }
 
+TEST_CASE("check names initial states that no start can be, and what never varies") {
+  const CliFixture cli;
+  const auto domain = cli.read("domain.e");
+  // A lid that no part of the plan speaks of, and that the world never opens.
+  cli.write("domain.e", domain + "fluent Lid()\n");
+  cli.replace("common.yaml", "Holding(): {flag: box.held}",
+              "Holding(): {flag: box.held}\n  Lid(): {start: box.x, above: 5.0}");
+  const auto said = check(cli, 0);
+  CHECK(has(said, "common.yaml:"));
+  CHECK(has(said,
+            "warning[W5311]: the model leaves `Lid()` open at timepoint 0, but no start has it "));
+  CHECK_FALSE(has(said, "W5312"));
+  // Settled by an axiom, or left out by the scenario.
+  cli.write("domain.e", domain + "fluent Lid()\n!HoldsAt(Lid(),0).\n");
+  CHECK_FALSE(has(check(cli, 0), "W5311"));
+  cli.write("domain.e", domain + "fluent Lid()\n");
+  const auto scenario = cli.read("scenario.yaml");
+  cli.write("scenario.yaml", scenario + "\ninitial: first\n");
+  CHECK_FALSE(has(check(cli, 0), "W5311"));
+}
+
+TEST_CASE("check names an initial state that no start can be though each fluent varies") {
+  const CliFixture cli;
+  // The box cannot lie on both sides at once, which the model does not know.
+  cli.write("domain.e", cli.read("domain.e") + "fluent Far()\nfluent Near()\n");
+  cli.replace("common.yaml", "Holding(): {flag: box.held}",
+              "Holding(): {flag: box.held}\n  Far(): {start: box.x, above: 1.6}\n"
+              "  Near(): {start: box.x, up_to: 1.4}");
+  const auto said = check(cli, 0);
+  CHECK(has(said, "common.yaml:"));
+  CHECK(has(said,
+            "warning[W5312]: no start of the world is the initial state with `Far()`, `Near()`: "
+            "cannot draw a start state: "));
+  CHECK_FALSE(has(said, "W5311"));
+}
+
 TEST_CASE("check warns of grips that the engine is known to let slip at the scenario's step") {
   const CliFixture cli;
   cli.replace("world.yaml", "    size_m: [0.07, 0.07, 0.07]\n    mass_kg: 0.3",

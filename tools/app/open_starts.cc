@@ -1,7 +1,9 @@
 #include "tools/app/open_starts.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
@@ -10,7 +12,9 @@
 
 #include "compiler/artifact/symbol_table.h"
 #include "compiler/base/codes/scenarios.h"
+#include "harness/campaign/loop_stream.h"
 #include "harness/campaign/trace_input.h"
+#include "harness/campaign/trial.h"
 #include "harness/discrete/model_simulator.h"
 #include "runtime/session/solver_session.h"
 
@@ -120,6 +124,84 @@ void report_open_starts(const ScenarioModel& loaded, Context& context) {
     context.sink().warning(
         codes::kOpenStart, mapping->find(symbol)->source, found.first,
         found.count == 1 ? "" : fmt::format(" and {} more of it", found.count - 1));
+  }
+}
+
+base::Result<harness::CampaignTrace> UnrealisableStarts::look(harness::CampaignTrace trace,
+                                                              harness::TraceFeed& traces) {
+  const auto& scenario = loaded_.scenario;
+  if (trace.other_initial_states != base::Known::kYes ||
+      scenario.initial == harness::Initial::kFirst) {
+    return trace;
+  }
+  auto compared = harness::compared_fluents(scenario, fluents_);
+  std::sort(compared.begin(), compared.end());
+  const auto starts = traces.starts(trace, compared);
+  if (!starts) return context_.sink().already_reported();
+  if (!*starts || (*starts)->more) return trace;
+  const auto& states = (*starts)->states;
+  std::vector<FluentId> open;
+  for (const auto fluent : compared) {
+    const auto count = std::count_if(states.begin(), states.end(), [&](const auto& state) {
+      return runtime::contains(state, fluent);
+    });
+    if (count > 0 && count < std::ssize(states)) open.push_back(fluent);
+  }
+  const std::vector<FluentId>* first = nullptr;
+  for (const auto& state : states) {
+    std::set<std::string> names;
+    for (const auto fluent : state) names.insert(trace.symbols->name(fluent));
+    std::set<Value> values;
+    for (const auto fluent : open) {
+      values.insert({trace.symbols->name(fluent), runtime::contains(state, fluent)});
+    }
+    base::DiagnosticSink unread;
+    if (harness::start_sampler(scenario, fluents_.ground(), names, unread)) {
+      if (first == nullptr) first = &state;
+      realised_.merge(values);
+      continue;
+    }
+    const auto said = unread.sorted();
+    found_.push_back({std::move(values), said.empty() ? "it has no start" : said.front().message});
+  }
+  if (first == nullptr || first == &states.front()) return trace;
+  auto found = traces.from(trace, compared, *first);
+  if (!found) return context_.sink().already_reported();
+  return found->second ? *std::move(found->second) : std::move(trace);
+}
+
+void UnrealisableStarts::report() const {
+  const auto& scenario = loaded_.scenario;
+  const auto place_of = [&](const std::string& fluent) {
+    const auto* binding = scenario.mapping->find(harness::ground_fluent(fluent).symbol);
+    return binding == nullptr ? scenario.sampling_source : binding->source;
+  };
+  std::set<Value> fixed;
+  constexpr std::size_t kMostShown = 5;
+  std::size_t shown = 0;
+  std::set<std::set<Value>> told;
+  for (const auto& found : found_) {
+    // Where the fluent has one value in every start, that is the reason, whatever else there is.
+    bool is_explained = false;
+    for (const auto& value : found.values) {
+      const bool other = realised_.contains({value.fluent, !value.holds});
+      if (realised_.contains(value) || !other) continue;
+      is_explained = true;
+      if (!fixed.insert(value).second) continue;
+      context_.sink().warning(codes::kFixedStart, place_of(value.fluent), value.fluent,
+                              value.holds ? "true" : "false", found.reason);
+    }
+    if (is_explained || !told.insert(found.values).second || ++shown > kMostShown) continue;
+    std::vector<std::string> names;
+    for (const auto& value : found.values) {
+      if (value.holds) names.push_back("`" + value.fluent + "`");
+    }
+    const auto& first = found.values.empty() ? std::string() : found.values.begin()->fluent;
+    context_.sink().warning(codes::kUnrealisableStart,
+                            first.empty() ? scenario.sampling_source : place_of(first),
+                            names.empty() ? "none of the fluents that are open"
+                                          : fmt::format("{}", fmt::join(names, ", ")),
+                            found.reason);
   }
 }
 

@@ -1,5 +1,11 @@
 #pragma once
 
+#include <compare>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "harness/campaign/trace_input.h"
 #include "tools/app/scenario_model.h"
 
 namespace parallax::tools {
@@ -8,5 +14,40 @@ namespace parallax::tools {
 /// mapping ignores them, and two initial states differ in them alone. The simulated world then
 /// begins in the same way for both initial states.
 void report_open_starts(const ScenarioModel& loaded, Context& context);
+
+/// Finds initial states that lead to the events of traces and that no start of the world can be.
+class UnrealisableStarts {
+ public:
+  /// All of it outlives the object.
+  UnrealisableStarts(const ScenarioModel& loaded, const harness::ModelFluents& fluents,
+                     Context& context)
+      : loaded_(loaded), fluents_(fluents), context_(context) {}
+
+  /// Looks at the initial states of a trace that `traces` gave, and returns it from the first one
+  /// that a start can be; as it is where none can, or the search was stopped. Fails as
+  /// TraceFeed::starts does.
+  base::Result<harness::CampaignTrace> look(harness::CampaignTrace trace,
+                                            harness::TraceFeed& traces);
+  /// Warns of fluents that every start has with one value though the model leaves them open
+  /// (kFixedStart), and of the other states that were found (kUnrealisableStart), the first few.
+  void report() const;
+
+ private:
+  struct Value {
+    std::string fluent;
+    bool holds = false;
+    auto operator<=>(const Value&) const = default;
+  };
+  struct Found {
+    std::set<Value> values;  // of the fluents in which initial states differ
+    std::string reason;
+  };
+
+  const ScenarioModel& loaded_;
+  const harness::ModelFluents& fluents_;
+  Context& context_;
+  std::set<Value> realised_;  // values that some start has
+  std::vector<Found> found_;
+};
 
 }  // namespace parallax::tools

@@ -239,6 +239,39 @@ void warn_of_grips(const harness::Scenario& scenario, base::DiagnosticSink& sink
   }
 }
 
+/// Prepares the first traces as a run does, and puts the built-in simulator into a start of each.
+void check_first_traces(const ScenarioModel& loaded, EnumeratedTraces& traces,
+                        const harness::ModelFluents& fluents,
+                        const std::vector<harness::CausedFluent>& caused,
+                        UnrealisableStarts& unrealisable, Context& context) {
+  auto& sink = context.sink();
+  const auto& scenario = loaded.scenario;
+  const auto simulator = tried_simulator(loaded, context);
+  const auto info = simulator ? simulator->info() : harness::SimulatorInfo();
+  std::set<std::string> tried;  // starts; most traces share theirs
+  const auto last = scenario.limits.max_traces > 0
+                        ? std::min(scenario.limits.max_traces, kTracesTried)
+                        : kTracesTried;
+  for (std::int64_t number = 0; number < last && !context.stopped(); ++number) {
+    auto given = traces.next();
+    if (!given || !*given) return;
+    const auto trace = unrealisable.look(**std::move(given), traces);
+    if (!trace) return;
+    const auto prepared = harness::prepare_trace(scenario, fluents.ground(), info, *trace, sink);
+    if (!prepared) return;
+    const auto errors_before = sink.error_count();
+    harness::check_stops(scenario, planned_fluents(*trace, caused), sink);
+    if (sink.error_count() != errors_before) return;
+    if (!simulator || !tried.insert(fmt::format("{}", fmt::join(trace->holds(0), ";"))).second) {
+      continue;
+    }
+    harness::check_first_start(
+        scenario, *trace, *prepared, fluents, kSeedTried, *simulator,
+        [&] { return context.stopped(); }, sink);
+    if (sink.error_count() != errors_before) return;
+  }
+}
+
 }  // namespace
 
 void check_before_run(const ScenarioModel& loaded, Context& context) {
@@ -264,31 +297,12 @@ void check_before_run(const ScenarioModel& loaded, Context& context) {
     return;
   }
   harness::warn_of_low_limit(scenario, context.files(), sink);
-  EnumeratedTraces traces(model, context);
+  EnumeratedTraces traces(loaded, context);
   traces.explain_absence_by([&] { return reasons_for_absence(loaded, context); });
   const harness::ModelFluents fluents(*traces.symbols());
-  const auto simulator = tried_simulator(loaded, context);
-  const auto info = simulator ? simulator->info() : harness::SimulatorInfo();
-  std::set<std::string> tried;  // starts; most traces share theirs
-  const auto last = scenario.limits.max_traces > 0
-                        ? std::min(scenario.limits.max_traces, kTracesTried)
-                        : kTracesTried;
-  for (std::int64_t number = 0; number < last && !context.stopped(); ++number) {
-    const auto trace = traces.next();
-    if (!trace || !*trace) return;
-    const auto prepared = harness::prepare_trace(scenario, fluents.ground(), info, **trace, sink);
-    if (!prepared) return;
-    const auto errors_before = sink.error_count();
-    harness::check_stops(scenario, planned_fluents(**trace, caused), sink);
-    if (sink.error_count() != errors_before) return;
-    if (!simulator || !tried.insert(fmt::format("{}", fmt::join((*trace)->holds(0), ";"))).second) {
-      continue;
-    }
-    harness::check_first_start(
-        scenario, **trace, *prepared, fluents, kSeedTried, *simulator,
-        [&] { return context.stopped(); }, sink);
-    if (sink.error_count() != errors_before) return;
-  }
+  UnrealisableStarts unrealisable(loaded, fluents, context);
+  check_first_traces(loaded, traces, fluents, caused, unrealisable, context);
+  unrealisable.report();
 }
 
 }  // namespace parallax::tools
