@@ -182,12 +182,13 @@ struct TraceResult {
   CertifiedBound stated;           // by the criterion itself
   CertifiedBound shared;           // the same with the trace's share of the error
   std::optional<std::int64_t> paper_stopped_at;
-  std::string paper_variant;             // "paper-literal, n = 2"
-  std::vector<std::string> not_covered;  // fluents without regression evidence
-  std::optional<SearchResult> search;    // before the simulations above, which are all draws
-  std::optional<LoopResult> loop;        // of executed plans, which have no trace
-  std::string claim;                     // exactly what is claimed, one sentence
-  std::vector<std::string> caveats;      // what weakens the claim, one sentence each
+  std::string paper_variant;                  // "paper-literal, n = 2"
+  std::optional<PaperFigures> paper_figures;  // with the criterion `paper`, after the last run
+  std::vector<std::string> not_covered;       // fluents without regression evidence
+  std::optional<SearchResult> search;         // before the simulations above, which are all draws
+  std::optional<LoopResult> loop;             // of executed plans, which have no trace
+  std::string claim;                          // exactly what is claimed, one sentence
+  std::vector<std::string> caveats;           // what weakens the claim, one sentence each
 };
 
 /// Coverage of one kind of thing in plan or model by the simulations.

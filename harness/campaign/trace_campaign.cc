@@ -294,6 +294,9 @@ class TraceCampaign {
     if (trial_.starts().is_single()) {
       result.paper_stopped_at = paper_stopped_at(tally_, spec_.paper, spec_.confidence_level);
       result.paper_variant = paper_variant(tally_, spec_.paper);
+      if (spec_.kind == CriterionKind::kPaper) {
+        result.paper_figures = paper_figures(tally_, spec_.paper, spec_.confidence_level);
+      }
     }
     result.not_covered = tally_.frame().not_covered;
     result.law = law_.result();

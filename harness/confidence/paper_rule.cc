@@ -224,6 +224,8 @@ class PaperFit {
     auto result = describe(name, *fit, shift);
     result.lower = span.lower + shift;
     result.upper = span.upper + shift;
+    result.sigma = sigma;
+    result.cell = cell;
     result.inside = result.lower >= cell.lower - spec_.tolerance_m &&
                     result.upper <= cell.upper + spec_.tolerance_m;
     if (!result.inside && why_not.empty()) {
@@ -336,6 +338,12 @@ PaperVerdict paper_rule(const Tally& tally, const PaperRuleSpec& spec, double co
   return paper_rule(
       {tally.x(), tally.y(), frame.x_range, frame.y_cell, frame.x_names, frame.y_names}, spec,
       confidence_level);
+}
+
+PaperFigures paper_figures(const Tally& tally, const PaperRuleSpec& spec, double confidence_level) {
+  const auto& frame = tally.frame();
+  return {frame.x_names, frame.x_range, std::ssize(tally.x()),
+          paper_rule(tally, spec, confidence_level)};
 }
 
 std::optional<std::int64_t> paper_stopped_at(const Tally& tally, const PaperRuleSpec& spec,

@@ -30,9 +30,11 @@ struct ParameterInterval {
   std::vector<double> coefficients;  // (n); 0 for an initial parameter of zero width
   double intercept = 0.0;
   double sse = 0.0;    // e'e
+  double sigma = 0.0;  // in the reading of the rule
   double lower = 0.0;  // the interval of the rule, same unit as the parameter
   double upper = 0.0;
   bool inside = false;  // within the expected cell, up to the tolerance
+  Interval cell;
 };
 
 struct PaperVerdict {
@@ -52,6 +54,15 @@ PaperVerdict paper_rule(const RegressionInput& input, const PaperRuleSpec& spec,
                         double confidence_level);
 /// Refuses besides when a run ended in another state that the model admits: the rule supposes one.
 PaperVerdict paper_rule(const Tally& tally, const PaperRuleSpec& spec, double confidence_level);
+
+/// What the rule came to, with all that it takes to work it out by hand.
+struct PaperFigures {
+  std::vector<std::string> x_names;  // (n) initial parameters, in the order of the coefficients
+  std::vector<Interval> x_range;     // (n)
+  std::int64_t runs = 0;             // s
+  PaperVerdict verdict;
+};
+PaperFigures paper_figures(const Tally& tally, const PaperRuleSpec& spec, double confidence_level);
 
 /// The first number of clean runs at which the rule holds, looking after every run; none where it
 /// is refused or never does. Linear in the number of runs.

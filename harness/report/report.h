@@ -13,6 +13,7 @@ namespace parallax::harness {
 
 struct ReportStyle {
   bool color = false;
+  bool figures = false;  // of the paper's rule: b, sigma and interval of each final parameter
 };
 
 /// The account for people: per trace the events with their places, simulations, verdict, both
@@ -23,8 +24,10 @@ std::string campaign_text(const CampaignResult& result, const ReportStyle& style
 /// at the discrepancy, what is claimed of each trace, and which command looks further.
 std::string campaign_summary(const CampaignResult& result, const ReportStyle& style);
 
-/// The document of `parallax run --json`, one line with a newline; `timing` only if asked for.
-std::string campaign_json(const CampaignResult& result, bool with_timing);
+/// The document of `parallax run --json`, one line with a newline; `timing`, and the figures of the
+/// paper's rule, only if asked for.
+std::string campaign_json(const CampaignResult& result, bool with_timing,
+                          bool with_figures = false);
 
 /// The command that repeats the simulation, for the folder where the run was started. The run
 /// folder is quoted where a shell needs it.

@@ -121,6 +121,32 @@ OrderedJson json_of(const SearchResult& search) {
   return out;
 }
 
+/// What the paper's rule came to, after the last run.
+void add_paper_figures(const PaperFigures& figures, OrderedJson& out) {
+  const auto& verdict = figures.verdict;
+  const auto ends = [](const Interval& of) { return OrderedJson{of.lower, of.upper}; };
+  out["runs"] = figures.runs;
+  out["quantile"] = verdict.z;
+  out["starts"] = OrderedJson::array();
+  for (std::size_t i = 0; i < figures.x_names.size(); ++i) {
+    out["starts"].push_back({{"name", figures.x_names[i]}, {"range", ends(figures.x_range[i])}});
+  }
+  out["intervals"] = OrderedJson::array();
+  for (const auto& one : verdict.intervals) {
+    out["intervals"].push_back({{"name", one.name},
+                                {"b", one.coefficients},
+                                {"intercept", one.intercept},
+                                {"sse", one.sse},
+                                {"sigma", one.sigma},
+                                {"lower", one.lower},
+                                {"upper", one.upper},
+                                {"cell", ends(one.cell)},
+                                {"inside", one.inside}});
+  }
+  out["exempt"] = verdict.exempt;
+  out["why_not"] = verdict.why_not;
+}
+
 OrderedJson json_of(const TraceResult& result, const std::vector<ComparedFluents>& compared) {
   const auto& trace = *result.trace;
   auto events = OrderedJson::array();
@@ -251,7 +277,7 @@ OrderedJson json_of(const CampaignResult& result, const Discrepancy& found) {
   return out;
 }
 
-OrderedJson json_of(const CampaignResult& result, bool with_timing) {
+OrderedJson json_of(const CampaignResult& result, bool with_timing, bool with_figures = false) {
   OrderedJson out = {{"status", result.failed ? "error" : "ok"},
                      {"scenario", result.scenario},
                      {"seed", result.seed},
@@ -277,7 +303,12 @@ OrderedJson json_of(const CampaignResult& result, bool with_timing) {
   }
   if (const auto text = in_states_text(result); !text.empty()) out["not_everywhere"] = text;
   out["traces"] = OrderedJson::array();
-  for (const auto& trace : result.traces) out["traces"].push_back(json_of(trace, result.compared));
+  for (const auto& trace : result.traces) {
+    out["traces"].push_back(json_of(trace, result.compared));
+    if (with_figures && trace.paper_figures) {
+      add_paper_figures(*trace.paper_figures, out["traces"].back()["paper"]);
+    }
+  }
   out["discrepancies"] = OrderedJson::array();
   for (const auto& found : result.discrepancies) {
     out["discrepancies"].push_back(json_of(result, found));
@@ -313,8 +344,8 @@ OrderedJson json_of(const CampaignResult& result, bool with_timing) {
 
 }  // namespace
 
-std::string campaign_json(const CampaignResult& result, bool with_timing) {
-  return text_of(json_of(result, with_timing), -1);
+std::string campaign_json(const CampaignResult& result, bool with_timing, bool with_figures) {
+  return text_of(json_of(result, with_timing, with_figures), -1);
 }
 
 base::Status write_report(const CampaignResult& result, const std::filesystem::path& run_dir,

@@ -286,6 +286,39 @@ class TextReport {
                                          base::counted(trace.clean, "clean run", "clean runs"),
                                          trace.paper_variant);
     line("paper's rule", paper);
+    if (style_.figures && trace.paper_figures) regression(*trace.paper_figures);
+  }
+
+  /// b, sigma and interval of each final parameter, for a check by hand.
+  void regression(const PaperFigures& figures) {
+    const auto& verdict = figures.verdict;
+    if (verdict.intervals.empty()) return line("regression", verdict.why_not);
+    line("regression",
+         fmt::format("s = {} runs, {} = {:.6f}", figures.runs,
+                     result_.criterion.paper.interval == IntervalKind::kMean ? "Z" : "t",
+                     verdict.z));
+    const bool has_intercept = result_.criterion.paper.intercept != InterceptKind::kNone;
+    for (const auto& one : verdict.intervals) {
+      std::vector<std::string> b;
+      for (std::size_t i = 0; i < figures.x_names.size(); ++i) {
+        if (figures.x_range[i].width() <= 0.0) continue;
+        b.push_back(fmt::format("{} {:.6g}", figures.x_names[i], one.coefficients[i]));
+      }
+      if (has_intercept) b.push_back(fmt::format("1 {:.6g}", one.intercept));
+      line(
+          one.name,
+          fmt::format("{} {} cell {}, sigma {:.6g}, b: {}", interval_text(one.lower, one.upper),
+                      one.inside ? "inside" : "not inside",
+                      interval_text(one.cell.lower, one.cell.upper), one.sigma, fmt::join(b, ", ")),
+          4);
+    }
+    if (!verdict.exempt.empty()) {
+      line("exempt", fmt::format("{}", fmt::join(verdict.exempt, ", ")), 4);
+    }
+  }
+
+  static std::string interval_text(double lower, double upper) {
+    return fmt::format("[{:.6g}, {:.6g}]", lower, upper);
   }
 
   void discrepancy(const Discrepancy& found, const TraceResult& trace) {

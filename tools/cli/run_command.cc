@@ -286,18 +286,18 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   result->coverage = coverage_of_run(*loaded, *result, invocation);
   warn_of_reused_starts(campaign, *result, loaded->scenario, sink);
   if (result->journal_open && !harness::write_report(*result, campaign.run_dir, sink)) return 0;
+  const bool is_verbose = invocation.options().verbosity > 0;
   if (invocation.options().json) {
-    invocation.document(harness::campaign_json(*result, true));
+    invocation.document(harness::campaign_json(*result, true, is_verbose));
   } else {
-    const harness::ReportStyle style{invocation.color_on(STDOUT_FILENO)};
-    invocation.result(invocation.options().verbosity > 0
-                          ? harness::campaign_text(*result, style)
-                          : harness::campaign_summary(*result, style));
+    const harness::ReportStyle style{invocation.color_on(STDOUT_FILENO), is_verbose};
+    invocation.result(is_verbose ? harness::campaign_text(*result, style)
+                                 : harness::campaign_summary(*result, style));
   }
   invocation.remark(fmt::format("{} simulations in {:.1f} s ({:.0f} s simulated)",
                                 result->timing.runs_made, result->timing.wall_s,
                                 result->timing.simulated_s));
-  if (invocation.options().verbosity > 0) {
+  if (is_verbose) {
     invocation.remark(fmt::format("model: {} variables, {} clauses, {} solver calls",
                                   model.variable_count(), model.clauses.size(), ran.solve_calls));
   }
@@ -352,6 +352,10 @@ Command run_command() {
           "that they did not show are rarer than epsilon.");
   command.heading("What is claimed");
   command.option("--criterion", options->criterion, "When a trace has been tried enough")
+      .details(
+          "paper is the regression rule of Meywerk et al.; with --verbose it prints b, sigma and "
+          "the "
+          "interval of each final parameter.")
       .check(OneOf{{"clean-runs", "anytime", "clopper-pearson", "paper", "paper-literal",
                     "paper-repaired"}});
   command
