@@ -67,10 +67,12 @@ base::Result<std::optional<harness::LoopStates>> ClosedLoop::initial_states(
     };
     const auto weights = start_weights(loaded_, found.states, compared_, value, context_);
     if (!weights) return sink.already_reported();
+    if (weights->are_all_zero()) return report_no_weight(loaded_, found.states.size(), context_);
+    note_idle_weights(loaded_, weights->held, context_);
     for (std::size_t i = 0; i < found.states.size(); ++i) {
-      if ((*weights)[i] == 0.0) continue;
+      if (weights->weights[i] == 0.0) continue;
       out.holds.push_back(std::move(found.states[i]));
-      out.weights.push_back((*weights)[i]);
+      out.weights.push_back(weights->weights[i]);
     }
   }
   states_ = out.holds;

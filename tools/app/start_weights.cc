@@ -58,7 +58,7 @@ base::Status check_start_weights(const harness::Scenario& scenario,
   return base::Unit{};
 }
 
-base::Result<std::vector<double>> start_weights(
+base::Result<StateWeights> start_weights(
     const ScenarioModel& loaded, const std::vector<std::vector<compiler::FluentId>>& states,
     const std::vector<compiler::FluentId>& fluents,
     const std::function<base::Known(const std::string&)>& predicate, Context& context) {
@@ -103,26 +103,40 @@ base::Result<std::vector<double>> start_weights(
                fmt::format("{}; asked is `{}`", why, entries[i].when.text));
   }
   if (sink.error_count() != errors_before) return sink.already_reported();
-  std::vector<double> weights;
-  double sum = 0.0;
+  StateWeights out;
   for (const auto& state : states) {
     const auto holds = [&](std::uint32_t number) {
       return ids[number] && std::binary_search(state.begin(), state.end(), *ids[number]);
     };
-    double weight = 1.0;
+    std::optional<double> weight;
     for (std::size_t i = 0; i < entries.size(); ++i) {
       if (!questions.holds(asked->guards[i], {}, holds)) continue;
-      weight = entries[i].weight;
-      break;
+      out.held.insert(i);
+      if (!weight) weight = entries[i].weight;
     }
-    weights.push_back(weight);
-    sum += weight;
+    out.weights.push_back(weight.value_or(1.0));
   }
-  if (sum > 0.0) return weights;
-  return sink.error(codes::kYamlOutOfBounds, loaded.scenario.start_weights_source,
-                    "the weight of initial states",
-                    fmt::format("0 for each of the {} that the model has", states.size()),
-                    "above 0 for one of them");
+  return out;
+}
+
+bool StateWeights::are_all_zero() const {
+  return std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0.0; });
+}
+
+base::Reported report_no_weight(const ScenarioModel& loaded, std::size_t states, Context& context) {
+  return context.sink().error(
+      codes::kYamlOutOfBounds, loaded.scenario.start_weights_source, "the weight of initial states",
+      fmt::format("0 for each of the {} that the model has", states), "above 0 for one of them");
+}
+
+void note_idle_weights(const ScenarioModel& loaded, const std::set<std::size_t>& held,
+                       Context& context) {
+  const auto& entries = loaded.scenario.start_weights;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (held.contains(i)) continue;
+    context.remark(fmt::format("`start_weights`: no initial state has what is asked for by `{}`",
+                               entries[i].when.text));
+  }
 }
 
 }  // namespace parallax::tools

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "compiler/base/codes/campaigns.h"
+#include "compiler/base/words.h"
+#include "harness/campaign/loop_stream.h"
 #include "harness/region/state_mapping.h"
 #include "runtime/explain/contradiction.h"
 #include "runtime/session/solver_session.h"
-#include "tools/app/start_weights.h"
 #include "tools/app/trace_writer.h"
 
 namespace parallax::tools {
@@ -123,6 +125,69 @@ EnumeratedTraces::EnumeratedTraces(const ScenarioModel& loaded, Context& context
 }
 
 base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
+  while (true) {
+    auto trace = next_trace();
+    if (!trace || loaded_ == nullptr) return trace;
+    if (!*trace) return end_of_weights() ? trace : context_->sink().already_reported();
+    const auto weighs = has_weight(**trace);
+    if (!weighs) return context_->sink().already_reported();
+    if (*weighs) return trace;
+  }
+}
+
+/// Has one of the trace's initial states a weight above 0?
+base::Result<bool> EnumeratedTraces::has_weight(const harness::CampaignTrace& trace) {
+  const harness::ModelFluents known(*trace.symbols);
+  auto fluents = harness::compared_fluents(loaded_->scenario, known);
+  std::sort(fluents.begin(), fluents.end());
+  std::vector<std::vector<compiler::FluentId>> states;
+  if (split_initial_ || trace.other_initial_states == base::Known::kNo) {
+    auto& own = states.emplace_back();
+    for (const auto fluent : fluents) {
+      if (runtime::contains(trace.points.front().holds, fluent)) own.push_back(fluent);
+    }
+  } else {
+    auto found = enumerator_->initial_states(trace, fluents, harness::kMostInitialStates);
+    if (found.stopped || found.more) return true;  // `starts` tells
+    states = std::move(found.states);
+  }
+  const auto weights = weights_of(states, fluents);
+  if (!weights) return context_->sink().already_reported();
+  weighed_.insert(weights->held.begin(), weights->held.end());
+  const bool any = !weights->are_all_zero();
+  ++(any ? with_weight_ : without_weight_);
+  if (!any) states_without_weight_ += states.size();
+  return any;
+}
+
+/// Called after the last trace.
+base::Status EnumeratedTraces::end_of_weights() {
+  if (std::exchange(weights_told_, true)) return base::Unit{};
+  if (without_weight_ > 0 && with_weight_ == 0) {
+    return report_no_weight(*loaded_, states_without_weight_, *context_);
+  }
+  if (without_weight_ > 0) {
+    context_->remark(
+        fmt::format("{} left out, as `start_weights` gives each of {} initial states the weight 0",
+                    base::counted(without_weight_, "trace is", "traces are"),
+                    base::agreed(without_weight_, "its", "their")));
+  }
+  if (enumerator_->exploration() != runtime::Exploration::kStopped) {
+    note_idle_weights(*loaded_, weighed_, *context_);
+  }
+  return base::Unit{};
+}
+
+base::Result<StateWeights> EnumeratedTraces::weights_of(
+    const std::vector<std::vector<compiler::FluentId>>& states,
+    const std::vector<compiler::FluentId>& told_by) {
+  const auto value = [&](const std::string& predicate) {
+    return runtime::predicate_value(*session_, predicate);
+  };
+  return start_weights(*loaded_, states, told_by, value, *context_);
+}
+
+base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next_trace() {
   auto trace = enumerator_->next();
   const bool is_stopped = enumerator_->exploration() == runtime::Exploration::kStopped;
   if (trace && (trace->other_initial_states == base::Known::kUndecided ||
@@ -197,17 +262,14 @@ base::Status EnumeratedTraces::weigh(harness::TraceStarts& starts,
                                   loaded_->scenario.start_weights_source,
                                   harness::kMostInitialStates);
   }
-  const auto value = [&](const std::string& predicate) {
-    return runtime::predicate_value(*session_, predicate);
-  };
-  const auto weights = start_weights(*loaded_, starts.states, told_by, value, *context_);
+  const auto weights = weights_of(starts.states, told_by);
   if (!weights) return context_->sink().already_reported();
   auto states = std::move(starts.states);
   starts.states.clear();
   for (std::size_t i = 0; i < states.size(); ++i) {
-    if ((*weights)[i] == 0.0) continue;
+    if (weights->weights[i] == 0.0) continue;
     starts.states.push_back(std::move(states[i]));
-    starts.weights.push_back((*weights)[i]);
+    starts.weights.push_back(weights->weights[i]);
   }
   return base::Unit{};
 }

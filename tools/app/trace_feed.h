@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/context.h"
 #include "tools/app/scenario_model.h"
+#include "tools/app/start_weights.h"
 
 namespace parallax::tools {
 
@@ -43,6 +45,11 @@ class EnumeratedTraces final : public harness::TraceFeed {
 
  private:
   base::Status explain_absence() const;
+  base::Result<std::optional<harness::CampaignTrace>> next_trace();
+  base::Result<bool> has_weight(const harness::CampaignTrace& trace);
+  base::Status end_of_weights();
+  base::Result<StateWeights> weights_of(const std::vector<std::vector<compiler::FluentId>>& states,
+                                        const std::vector<compiler::FluentId>& told_by);
   base::Status weigh(harness::TraceStarts& starts, const std::vector<compiler::FluentId>& told_by);
 
   const compiler::CompiledModel* model_;
@@ -50,6 +57,11 @@ class EnumeratedTraces final : public harness::TraceFeed {
   bool split_initial_;
   std::function<std::vector<std::string>()> reasons_;
   const ScenarioModel* loaded_ = nullptr;  // with `start_weights`; null: there are none
+  std::set<std::size_t> weighed_;          // entries that hold in some initial state
+  std::int64_t with_weight_ = 0;           // traces with a state of a weight above 0
+  std::int64_t without_weight_ = 0;        // others, which are left out
+  std::size_t states_without_weight_ = 0;  // of these
+  bool weights_told_ = false;
   /// What tells initial states apart, of traces that were asked about, by number.
   std::map<std::int64_t, std::vector<compiler::FluentId>> told_by_;
   std::unique_ptr<runtime::SolverSession> session_;
