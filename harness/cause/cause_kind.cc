@@ -1,6 +1,7 @@
 // Which kind of cause fits the runs of one discrepancy.
 //
-// The first that applies: all runs fail, at least five of them (an axiom is wrong); a rule of
+// The first that applies: the initial state of the model alone decides (state_rule.cc: a condition
+// is missing); all runs fail, at least five of them (an axiom is wrong); a rule of
 // one or two borders tells failing starts (failure_rule.cc: the region is too coarse); one and
 // the same start both fails and passes (the outcome is open, or the simulator is in doubt). Else
 // the runs tell nothing by themselves, and what was tried since decides: the borders of a start
@@ -72,6 +73,11 @@ void weigh_persistence(std::optional<Persistence> other_seeds, std::optional<Per
   }
 }
 
+void weigh_states(const std::vector<StateRun>& runs, CauseFinding& finding) {
+  finding.where = state_rule(runs);
+  if (finding.where && finding.where->is_exact()) finding.kind = CauseKind::kState;
+}
+
 namespace {
 
 /// The part of the start region that borders of a failing start say, with the runs in it.
@@ -128,8 +134,8 @@ void weigh_borders(const std::vector<CauseBorder>& borders, const std::vector<Ca
 }
 
 std::string_view to_string(CauseKind kind) {
-  static constexpr std::string_view kWords[] = {"unknown", "always", "region", "random",
-                                                "simulator"};
+  static constexpr std::string_view kWords[] = {"unknown", "always",    "region",
+                                                "random",  "simulator", "state"};
   return kWords[static_cast<std::size_t>(kind)];
 }
 
@@ -209,6 +215,8 @@ std::string kind_words(const CauseFinding& finding, const std::vector<std::strin
                        "It happens in {} of {}, with some seeds of the simulator and not "
                        "with others.",
                        finding.failures, runs_text(finding.runs));
+    case CauseKind::kState:
+      return "It depends on the initial state: a condition is missing or wrong.";
     case CauseKind::kUnknown:
       break;
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/cause/failure_rule.h"
+#include "harness/cause/state_rule.h"
 
 namespace parallax::harness {
 
@@ -17,8 +18,9 @@ enum class CauseKind : std::uint8_t {
   kRegion,     // runs fail in a part of the start region
   kRandom,     // from one and the same start runs fail or do not: the outcome is open
   kSimulator,  // the same where the world is a simulator: its seed alone decides
+  kState,      // every run fails in some initial states and none in others: a condition is missing
 };
-/// "unknown", "always", "region", "random", "simulator"
+/// "unknown", "always", "region", "random", "simulator", "state"
 std::string_view to_string(CauseKind kind);
 
 /// Counts of repetitions from one failing start, and of those that failed again.
@@ -40,6 +42,8 @@ struct CauseFinding {
   /// Starts, equal to the last bit, from which some runs fail and others do not.
   std::int64_t contradictory_starts = 0;
   std::optional<FailureRule> rule;
+  /// The initial states that most failures begin in, where the runs show that.
+  std::optional<StateRule> where;
   /// Persistence of a failing start with other seeds of the simulator, and with half its step.
   std::optional<Persistence> other_seeds, half_step;
   /// The borders found by moving a failing start. Each of these, alone, ends the failure.
@@ -48,6 +52,9 @@ struct CauseFinding {
 
 /// `is_model`: the world is a model, so that what differs from one start is its open outcome.
 CauseFinding tell_cause(const std::vector<CauseRun>& runs, bool is_model);
+
+/// Takes into account the initial states of the same runs.
+void weigh_states(const std::vector<StateRun>& runs, CauseFinding& finding);
 
 /// Takes into account whether it happens again from the failing start: where the runs tell nothing
 /// else and it does not in most of either kind, the simulator is in doubt.
@@ -65,7 +72,7 @@ std::string rule_text(const std::vector<Border>& borders,
                       const std::vector<std::string>& parameters);
 
 /// Describes the finding, with the counts behind it, in one or two sentences; contradictory runs
-/// first.
+/// first. Of initial states state_words tells.
 std::string cause_words(const CauseFinding& finding, const std::vector<std::string>& parameters);
 
 }  // namespace parallax::harness

@@ -18,8 +18,8 @@ constexpr std::int64_t kDefaultRuns = 100;
 constexpr double kDefaultEvidence = 0.95;
 
 CauseExpectation read_cause(const YamlNode& node, base::DiagnosticSink& sink) {
-  static constexpr std::array<std::string_view, 4> kCauseKinds = {"always", "region", "random",
-                                                                  "simulator"};
+  static constexpr std::array<std::string_view, 5> kCauseKinds = {"always", "region", "random",
+                                                                  "simulator", "state"};
   const auto errors_before = sink.error_count();
   CauseExpectation cause;
   cause.source = node.range;

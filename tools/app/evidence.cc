@@ -73,8 +73,7 @@ base::Result<harness::Persistence> count_failures(const RecordedDiscrepancy& fou
 
 base::Result<CauseEvidence> gather_evidence(const std::string& run_dir,
                                             const RecordedDiscrepancy& found,
-                                            const std::vector<harness::SampleRecord>& further,
-                                            Context& context) {
+                                            const FurtherRecords& further, Context& context) {
   const harness::SampleId id = found.path.id;
   const harness::SampleKey known(id.trace, id.sample, harness::DrawPhase::kCertify);
   auto journal = without_samples(found.journal);
@@ -87,14 +86,21 @@ base::Result<CauseEvidence> gather_evidence(const std::string& run_dir,
     if (add(key, record)) journal.places[key] = found.journal.places.at(key);
   }
   CauseEvidence out;
-  for (const auto& record : further) {
+  for (const auto& [start, line] : further.starts) {
+    if (journal.starts.emplace(start, line).second) {
+      journal.start_places[start] = found.journal.trace_places.at(start.first);
+    }
+  }
+  for (const auto& record : further.samples) {
     if (add({record.trace, record.sample, record.phase}, record)) ++out.further;
   }
   const auto paths = observed_paths(found.loaded, journal, context);
   if (!paths) return context.sink().already_reported();
   BearingReader reader(found, context);
+  const auto& fluents = found.loaded.compilation.model.fluents;
   std::vector<const harness::State*> bearing;
   std::vector<bool> failed;
+  std::vector<harness::StateRun> states;
   for (const auto& path : *paths) {
     const auto how = reader.bearing(path);
     if (how == Bearing::kOther) {
@@ -103,6 +109,11 @@ base::Result<CauseEvidence> gather_evidence(const std::string& run_dir,
     }
     bearing.push_back(&path.start);
     failed.push_back(how == Bearing::kSame);
+    auto& state = states.emplace_back();
+    state.failed = failed.back();
+    for (const auto& [fluent, holds] : path.states.front()) {
+      if (holds) state.holds.insert(fluents[fluent.index()].name);
+    }
   }
   if (context.stopped()) {
     out.not_made = "stopped before those on record were looked at";
@@ -112,6 +123,7 @@ base::Result<CauseEvidence> gather_evidence(const std::string& run_dir,
                        kept_borders(run_dir, id, found.path.start));
   out.parameters = std::move(told.parameters);
   out.finding = std::move(told.finding);
+  harness::weigh_states(states, out.finding);
   return out;
 }
 

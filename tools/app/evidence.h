@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "compiler/base/result.h"
 #include "harness/campaign/campaign.h"
+#include "harness/campaign/journal.h"
 #include "harness/campaign/sample_runner.h"
 #include "harness/cause/cause_kind.h"
 #include "tools/app/context.h"
@@ -24,7 +26,18 @@ struct CauseEvidence {
   /// Why no further ones were made; empty: as many as were asked for.
   std::string not_made;
 
+  /// The initial states that it fails in; empty where the runs do not tell.
+  std::string where() const {
+    return finding.where ? harness::state_words(*finding.where) : std::string();
+  }
   std::string words() const { return harness::cause_words(finding, parameters); }
+};
+
+/// Simulations that were made beside a run, with the trace from those of its initial states that
+/// the run did not begin in.
+struct FurtherRecords {
+  std::vector<harness::SampleRecord> samples;
+  std::map<harness::StartKey, harness::TraceLine> starts;
 };
 
 /// Finds out from the starts of one trace's simulations why some of them failed.
@@ -37,8 +50,7 @@ CauseEvidence cause_of(const std::vector<const harness::State*>& starts,
 /// observed_paths does.
 base::Result<CauseEvidence> gather_evidence(const std::string& run_dir,
                                             const RecordedDiscrepancy& found,
-                                            const std::vector<harness::SampleRecord>& further,
-                                            Context& context);
+                                            const FurtherRecords& further, Context& context);
 
 /// Number of these simulations, of the same trace or of executions, that go wrong like the
 /// discrepancy; they are numbered from 1, whatever the numbers in the journal. Simulations that
@@ -69,16 +81,19 @@ inline constexpr const char* kFurtherRuns = "further";
 /// and records them in RUN_DIR/further, where they are found the next time; the run itself stays as
 /// it is, also for --resume. `as_run`: the scenario as it is run. Of a trace only; reports as
 /// estimate_rates does, and what claiming a folder reports.
-base::Result<std::vector<harness::SampleRecord>> further_runs(
-    const std::string& run_dir, const RecordedDiscrepancy& found, const ScenarioModel& as_run,
-    const harness::SimulatorFactory& make_simulator, const FurtherRunsOptions& options,
-    Context& context);
+base::Result<FurtherRecords> further_runs(const std::string& run_dir,
+                                          const RecordedDiscrepancy& found,
+                                          const ScenarioModel& as_run,
+                                          const harness::SimulatorFactory& make_simulator,
+                                          const FurtherRunsOptions& options, Context& context);
 
 /// The same of an executed plan: executions that begin in the state that the discrepancy began in.
-base::Result<std::vector<harness::SampleRecord>> further_executions(
-    const std::string& run_dir, const RecordedDiscrepancy& found, const ScenarioModel& as_run,
-    const harness::SimulatorFactory& make_simulator, const FurtherRunsOptions& options,
-    Context& context);
+base::Result<FurtherRecords> further_executions(const std::string& run_dir,
+                                                const RecordedDiscrepancy& found,
+                                                const ScenarioModel& as_run,
+                                                const harness::SimulatorFactory& make_simulator,
+                                                const FurtherRunsOptions& options,
+                                                Context& context);
 
 /// Simulates the discrepancy's own start and actions again, `repeats` times each with other seeds
 /// and with the simulator of half the step (null: there is none), and records that in

@@ -12,7 +12,6 @@ namespace parallax::tools {
 namespace {
 
 using harness::DrawPhase;
-using harness::SampleRecord;
 using harness::SampleStatus;
 
 /// Size of a batch, whatever the number of workers.
@@ -27,12 +26,14 @@ std::int64_t last_sample(const harness::JournalText& journal) {
 
 }  // namespace
 
-base::Result<std::vector<SampleRecord>> further_executions(
-    const std::string& run_dir, const RecordedDiscrepancy& found, const ScenarioModel& as_run,
-    const harness::SimulatorFactory& make_simulator, const FurtherRunsOptions& options,
-    Context& context) {
+base::Result<FurtherRecords> further_executions(const std::string& run_dir,
+                                                const RecordedDiscrepancy& found,
+                                                const ScenarioModel& as_run,
+                                                const harness::SimulatorFactory& make_simulator,
+                                                const FurtherRunsOptions& options,
+                                                Context& context) {
   auto& sink = context.sink();
-  std::vector<SampleRecord> out;
+  FurtherRecords out;
   const ExtraRunsOptions extra{options.jobs, options.runs, options.progress};
   auto runs = ExtraRuns::open({run_dir, kFurtherRuns, *found.journal.header}, as_run,
                               make_simulator, extra, context);
@@ -63,7 +64,7 @@ base::Result<std::vector<SampleRecord>> further_executions(
       const auto judged = harness::judge_path(*scenario.mapping, (*runs)->bench().fluents(), **loop,
                                               record, scenario.comparison());
       ++(judged.admitted == base::Known::kNo ? failures : clean);
-      out.push_back(record);
+      out.samples.push_back(record);
     }
   }
   if (!context.stopped() && !(*runs)->close()) return sink.already_reported();

@@ -30,8 +30,8 @@ class FurtherRuns {
     scenario_.compare = recorded_comparison(*found.journal.header).value_or(scenario_.comparison());
   }
 
-  base::Result<std::vector<SampleRecord>> run(const std::string& run_dir,
-                                              const harness::SimulatorFactory& make_simulator) {
+  base::Result<FurtherRecords> run(const std::string& run_dir,
+                                   const harness::SimulatorFactory& make_simulator) {
     auto& sink = context_.sink();
     auto journal = open(run_dir);
     if (!journal) return sink.already_reported();
@@ -41,10 +41,10 @@ class FurtherRuns {
         [&](const SampleRecord& record) { (*journal)->append(record); }, sink);
     const auto started = bench.start();
     if (!started) return sink.already_reported();
-    if (!*started) return std::vector<SampleRecord>();
+    if (!*started) return FurtherRecords();
     auto trace = this_trace();
     if (!trace) return sink.already_reported();
-    if (!*trace) return std::vector<SampleRecord>();
+    if (!*trace) return FurtherRecords();
     auto trial = harness::Trial::prepare(bench, *std::move(*trace));
     if (!trial) return sink.already_reported();
     if (!check_draws(**journal, trial->plan())) return sink.already_reported();
@@ -104,9 +104,11 @@ class FurtherRuns {
   base::Status announce(harness::Journal& journal, const harness::TracePlan& plan) {
     if (!check_draws(journal, plan)) return context_.sink().already_reported();
     const auto number = plan.trace->number;
+    harness::TraceLine line{plan.trace, plan.calls, plan.start_state, {}};
     if (journal.find(number, plan.start_state) == nullptr) {
-      journal.append(harness::TraceLine{plan.trace, plan.calls, plan.start_state, {}});
+      journal.append(line);
     }
+    made_.starts.emplace(harness::StartKey(number, plan.start_state), std::move(line));
     return base::Unit{};
   }
 
@@ -145,7 +147,7 @@ class FurtherRuns {
       if (is_recorded((*sample)->record)) continue;
       ++made;
       if (!journal.write_error().empty()) break;
-      if (!is_lost) made_.push_back(std::move((*sample)->record));
+      if (!is_lost) made_.samples.push_back(std::move((*sample)->record));
       if (!options_.progress) continue;
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
       const auto rate = static_cast<double>(bench.runs_made()) / std::max(elapsed.count(), 1e-9);
@@ -159,15 +161,16 @@ class FurtherRuns {
   const FurtherRunsOptions& options_;
   Context& context_;
   EnumeratedTraces feed_;
-  std::vector<SampleRecord> made_;
+  FurtherRecords made_;
 };
 
 }  // namespace
 
-base::Result<std::vector<SampleRecord>> further_runs(
-    const std::string& run_dir, const RecordedDiscrepancy& found, const ScenarioModel& as_run,
-    const harness::SimulatorFactory& make_simulator, const FurtherRunsOptions& options,
-    Context& context) {
+base::Result<FurtherRecords> further_runs(const std::string& run_dir,
+                                          const RecordedDiscrepancy& found,
+                                          const ScenarioModel& as_run,
+                                          const harness::SimulatorFactory& make_simulator,
+                                          const FurtherRunsOptions& options, Context& context) {
   return FurtherRuns(found, as_run, options, context).run(run_dir, make_simulator);
 }
 

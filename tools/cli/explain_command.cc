@@ -83,13 +83,12 @@ int explain_contradiction(const compiler::CompiledModel& model, const SetOptions
 
 /// Makes further simulations, if they are permitted and needed; a remark tells why not. The first
 /// time, also repeats the very start that failed.
-base::Result<std::vector<harness::SampleRecord>> make_further_runs(const ExplainOptions& options,
-                                                                   const RecordedDiscrepancy& found,
-                                                                   std::string& not_made,
-                                                                   SameStart& persistence,
-                                                                   Invocation& invocation) {
+base::Result<FurtherRecords> make_further_runs(const ExplainOptions& options,
+                                               const RecordedDiscrepancy& found,
+                                               std::string& not_made, SameStart& persistence,
+                                               Invocation& invocation) {
   const auto& sink = invocation.sink();
-  std::vector<harness::SampleRecord> none;
+  FurtherRecords none;
   if (options.further.runs == 0) return none;
   // Uses the name under which the scenario was found, which a remark has told.
   const RunFolderOptions folder{options.model.models.front(),
@@ -148,7 +147,7 @@ base::Result<CauseEvidence> with_further_runs(const ExplainOptions& options,
     const auto known = evidence.further;
     if (invocation.stopped()) {
       not_made = "stopped before there were enough";
-    } else if (!further->empty()) {
+    } else if (!further->samples.empty()) {
       auto more = gather_evidence(options.model.models.front(), found, *further, invocation);
       if (!more) return more;
       evidence = *std::move(more);
@@ -158,6 +157,12 @@ base::Result<CauseEvidence> with_further_runs(const ExplainOptions& options,
     const bool is_known = evidence.finding.kind != harness::CauseKind::kUnknown;
     if (is_known || evidence.further == known || invocation.stopped()) return evidence;
   }
+}
+
+/// Does the trace of the discrepancy begin in several initial states?
+bool has_other_starts(const RecordedDiscrepancy& found) {
+  const auto line = found.journal.traces.find(found.path.id.trace);
+  return line != found.journal.traces.end() && !line->second.initial_states.empty();
 }
 
 /// Explains why the model excludes the observations: in words first, then the sets, then the kind
@@ -184,11 +189,15 @@ int explain_discrepancy(const RecordedDiscrepancy& found, const ExplainOptions& 
     invocation.result(no_contradiction_text(model, &run));
     return 0;
   }
-  const auto recorded = gather_evidence(all_options.model.models.front(), found, {}, invocation);
+  auto recorded = gather_evidence(all_options.model.models.front(), found, {}, invocation);
+  // Where it may depend on the initial state, that is told first.
+  const bool runs_first = recorded && has_other_starts(found);
+  if (runs_first) recorded = with_further_runs(all_options, found, *recorded, invocation);
   if (!recorded) return 0;
   // Contradictory runs are reported first: then no axiom has to change at once.
   const bool cause_first = recorded->finding.contradictory_starts > 0;
   if (cause_first && !as_json) invocation.result(cause_text(*recorded) + '\n');
+  if (!as_json) invocation.result(where_text(*recorded));
   std::vector<Contradiction> sets;
   std::vector<std::string> words;
   for (const auto& set : sets_found->sets) {
@@ -205,7 +214,8 @@ int explain_discrepancy(const RecordedDiscrepancy& found, const ExplainOptions& 
                                          is_first ? std::string() : words.back()));
   }
   const bool was_cut_short = invocation.stopped();
-  const auto cause = with_further_runs(all_options, found, *recorded, invocation);
+  const auto cause =
+      runs_first ? recorded : with_further_runs(all_options, found, *recorded, invocation);
   if (!cause) return 0;
   if (as_json) {
     invocation.document(

@@ -169,6 +169,16 @@ ordered_json rule_json(const harness::FailureRule& rule,
           {"accuracy", rule.accuracy}};
 }
 
+ordered_json state_rule_json(const harness::StateRule& rule) {
+  auto literals = ordered_json::array();
+  for (const auto& [fluent, value] : rule.literals) {
+    literals.push_back({{"fluent", fluent}, {"value", value}});
+  }
+  return {{"literals", std::move(literals)},         {"text", harness::state_words(rule)},
+          {"failures_inside", rule.failures_inside}, {"failures", rule.failures},
+          {"clean_inside", rule.clean_inside},       {"clean", rule.clean}};
+}
+
 const char* role_word(Difference::Role role) {
   switch (role) {
     case Difference::Role::kFirst:
@@ -214,6 +224,7 @@ std::string run_contradictions_json(const RecordedDiscrepancy& found,
   const auto& finding = cause.finding;
   document["cause"] = to_string(finding.kind);
   document["cause_words"] = cause.words();
+  if (finding.where) document["where"] = state_rule_json(*finding.where);
   if (finding.rule) document["rule"] = rule_json(*finding.rule, cause.parameters);
   for (const auto& border : finding.borders) {
     document["borders"].push_back(
@@ -231,6 +242,11 @@ std::string run_contradictions_json(const RecordedDiscrepancy& found,
   add("other_seeds", finding.other_seeds);
   add("half_step", finding.half_step);
   return base::json_text(document) + '\n';
+}
+
+std::string where_text(const CauseEvidence& cause) {
+  const auto where = cause.where();
+  return where.empty() ? where : harness::wrapped("", where, 0);
 }
 
 std::string cause_text(const CauseEvidence& cause) {

@@ -41,6 +41,8 @@ std::string run_contradictions_json(const RecordedDiscrepancy& found,
                                     const CauseEvidence& cause);
 /// The kind of cause, with the runs behind it.
 std::string cause_text(const CauseEvidence& cause);
+/// The initial states that it fails in; empty where the runs do not tell.
+std::string where_text(const CauseEvidence& cause);
 
 /// The message that there is no contradiction.
 std::string no_contradiction_text(const compiler::CompiledModel& model, const ObservedRun* run);

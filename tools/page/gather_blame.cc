@@ -20,8 +20,8 @@ namespace {
 
 /// Simulations that `explain` made, from a folder of the run folder; empty for another trace than
 /// the discrepancy's.
-std::vector<harness::SampleRecord> records_of(const std::string& folder, const char* name) {
-  std::vector<harness::SampleRecord> out;
+FurtherRecords records_of(const std::string& folder, const char* name) {
+  FurtherRecords out;
   const auto further = (std::filesystem::path(folder) / name).string();
   std::error_code error;
   if (!std::filesystem::exists(std::filesystem::path(further) / harness::kJournalName, error)) {
@@ -30,7 +30,8 @@ std::vector<harness::SampleRecord> records_of(const std::string& folder, const c
   Context own;
   const auto journal = harness::read_journal(further, own.files(), own.sink());
   if (!journal) return out;
-  for (const auto& [key, record] : journal->samples) out.push_back(record);
+  for (const auto& [key, record] : journal->samples) out.samples.push_back(record);
+  out.starts = journal->starts;
   return out;
 }
 
@@ -38,7 +39,7 @@ std::vector<harness::SampleRecord> records_of(const std::string& folder, const c
 std::optional<harness::Persistence> persistence(const RecordedDiscrepancy& found,
                                                 const std::string& folder, const char* name,
                                                 Context& context) {
-  auto records = records_of(folder, name);
+  auto records = records_of(folder, name).samples;
   std::erase_if(records, [](const auto& one) { return one.status != harness::SampleStatus::kOk; });
   if (records.empty()) return std::nullopt;
   const auto counted = count_failures(found, records, context);
@@ -128,6 +129,7 @@ void add_blame(const PageOptions& options, Context& context, PageData& page) {
     harness::weigh_persistence(persistence(discrepancy, options.folder, kOtherSeeds, context),
                                persistence(discrepancy, options.folder, kHalfStep, context),
                                evidence->finding);
+    blame.where = evidence->where();
     blame.cause = evidence->words();
     blame.cause_first = evidence->finding.contradictory_starts > 0;
     if (const auto& rule = evidence->finding.rule) page.rule = rule_of(*rule, evidence->parameters);

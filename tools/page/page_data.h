@@ -171,6 +171,7 @@ struct PageRule {
 struct PageBlame {
   std::string words, more;
   std::vector<PagePlace> axioms;
+  std::string where;         // the initial states that it fails in
   std::string cause;         // the kind of cause in words, by the runs on record
   bool cause_first = false;  // runs from one start contradict each other
 };

@@ -93,6 +93,7 @@ std::string blame_section(const PageData& page, const SourceLinks& links) {
                            : "<p><b>Kind of cause:</b> " + html_words(blame.cause) + "</p>\n";
     // Where runs contradict each other, no axiom has to change at once.
     if (blame.cause_first) out += cause;
+    if (!blame.where.empty()) out += "<p class=\"lead\">" + html_words(blame.where) + "</p>\n";
     out += "<p class=\"lead\">" + html_words(blame.words) + "</p>\n";
     if (!blame.more.empty()) out += "<p>" + html_words(blame.more) + "</p>\n";
     if (!blame.cause_first) out += cause;
