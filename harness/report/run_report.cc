@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "compiler/base/json.h"
@@ -60,6 +61,15 @@ std::vector<std::string> reported_texts(const ReportJson& object, const char* na
   return out;
 }
 
+/// One text an entry, empty where it is none, so that each keeps its place.
+std::vector<std::string> reported_places(const ReportJson& object, const char* name) {
+  std::vector<std::string> out;
+  for (const auto& value : reported_list(object, name)) {
+    out.push_back(base::json_as<std::string>(value).value_or(""));
+  }
+  return out;
+}
+
 /// The enumerator up to `last` that has this word; the fallback if there is none.
 template <typename Enum, typename Word>
 Enum enumerator(std::string_view text, Enum last, const Word& word, Enum otherwise) {
@@ -111,12 +121,15 @@ State reported_state(const ReportJson& object, const char* name) {
   return out;
 }
 
+PathEnd reported_end(std::string_view text) {
+  return enumerator(
+      text, PathEnd::kUnnamedObject, [](PathEnd end) { return to_string(end); }, PathEnd::kDone);
+}
+
 ExecutedPath reported_path(const ReportJson& entry) {
   ExecutedPath out;
   out.start = reported_whole(entry, "start_state");
-  out.end = enumerator(
-      reported_text(entry, "path_end"), PathEnd::kUnnamedObject,
-      [](PathEnd end) { return to_string(end); }, PathEnd::kDone);
+  out.end = reported_end(reported_text(entry, "path_end"));
   for (const auto& one : reported_list(entry, "path")) {
     PathStep step;
     step.event = reported_text(one, "event");
@@ -164,24 +177,121 @@ ReportedDiscrepancy reported_discrepancy(const ReportJson& entry) {
                        reported<bool>(differs, "outcome"), reported<bool>(differs, "together")};
     record.path = reported_path(entry);
   }
-  out.words = reported_text(entry, "words");
+  out.words = reported<std::string>(entry, "words", found.cause.text);
   out.replay = reported_text(entry, "replay");
+  const auto& standing = reported_member(entry, "standing");
+  out.standing = {standing_named(reported_text(standing, "is")), reported_text(standing, "words")};
   out.is_whole = reported_or_none<std::int64_t>(entry, "trace") &&
                  reported_or_none<std::int64_t>(entry, "sample") && divergence &&
                  *divergence >= 0 && are_whole_fluents(reported_member(entry, "first"));
   return out;
 }
 
+PathCount reported_count(const ReportJson& entry) {
+  return {reported_texts(entry, "events"),           reported_texts(entry, "outcomes"),
+          reported_end(reported_text(entry, "end")), reported_text(entry, "detail"),
+          reported_whole(entry, "simulations"),      reported_whole(entry, "example")};
+}
+
+ReportedCover reported_cover(const ReportJson& cover) {
+  return {reported_text(cover, "end"), reported_whole(cover, "items"),
+          reported_whole(cover, "shown"), reported<double>(cover, "confidence"),
+          reported<double>(cover, "bound", 1.0)};
+}
+
+StartResult reported_starts(const ReportJson& starts) {
+  StartResult out;
+  out.all = reported_or_none<std::int64_t>(starts, "all");
+  out.tried = reported_whole(starts, "tried");
+  out.visits = reported_whole(starts, "visits");
+  for (const auto& state : reported_list(starts, "states")) {
+    out.states[reported_whole(state, "state")] = {
+        reported_text(state, "holds"), reported_whole(state, "clean"),
+        reported_whole(state, "lost"), reported_whole(state, "discrepancies")};
+  }
+  return out;
+}
+
 ReportedTrace reported_trace(const ReportJson& entry) {
-  const auto& certified = reported_member(entry, "certified");
-  return {reported_whole(entry, "trace"),
-          reported_text(entry, "verdict"),
-          reported_texts(entry, "events"),
-          reported_texts(entry, "initial_state"),
-          reported_or_none<std::int64_t>(entry, "simulations"),
-          reported_or_none<std::int64_t>(entry, "clean"),
-          reported_or_none<double>(certified, "confidence"),
-          reported_or_none<double>(certified, "epsilon")};
+  const auto &certified = reported_member(entry, "certified"),
+             &paper = reported_member(entry, "paper");
+  ReportedTrace out;
+  out.number = reported_whole(entry, "trace");
+  out.verdict = reported_text(entry, "verdict");
+  out.claim = reported_text(entry, "claim");
+  out.events = reported_texts(entry, "events");
+  out.sources = reported_places(entry, "sources");
+  out.initial_state = reported_texts(entry, "initial_state");
+  if (const auto& starts = reported_member(entry, "initial_states"); starts.is_object()) {
+    out.starts = reported_starts(starts);
+  }
+  out.caveats = reported_texts(entry, "caveats");
+  out.not_covered = reported_texts(entry, "not_covered");
+  out.simulations = reported_or_none<std::int64_t>(entry, "simulations");
+  out.clean = reported_or_none<std::int64_t>(entry, "clean");
+  out.lost = reported_or_none<std::int64_t>(entry, "lost");
+  for (const auto& lost : reported_list(entry, "losses")) {
+    out.losses.push_back({reported_text(lost, "reason"), reported_whole(lost, "count"),
+                          reported_whole(lost, "example")});
+  }
+  out.confidence = reported_or_none<double>(certified, "confidence");
+  out.epsilon = reported_or_none<double>(certified, "epsilon");
+  out.error_share = reported_or_none<double>(entry, "error_share");
+  out.paper_stopped_at = reported_or_none<std::int64_t>(paper, "stopped_at");
+  out.paper_variant = reported_text(paper, "variant");
+  for (const auto& cause : reported_list(entry, "causes")) {
+    auto& rate = out.causes.emplace_back();
+    rate.cause = reported_text(cause, "cause");
+    rate.count = reported_whole(cause, "count");
+    rate.rate = reported<double>(cause, "rate");
+    rate.lower = reported<double>(cause, "lower");
+    rate.upper = reported<double>(cause, "upper", 1.0);
+    rate.example = reported_whole(cause, "example");
+    rate.reason = reported_text(cause, "reason");
+  }
+  out.chosen_starts = reported_or_none<std::int64_t>(entry, "chosen_starts");
+  out.unfinished = reported_or_none<std::int64_t>(entry, "unfinished");
+  for (const auto& path : reported_list(entry, "paths")) out.paths.push_back(reported_count(path));
+  if (const auto& cover = reported_member(entry, "until_covered"); cover.is_object()) {
+    out.cover = reported_cover(cover);
+  }
+  return out;
+}
+
+std::optional<CriterionSpec> reported_criterion(const ReportJson& criterion) {
+  if (!criterion.is_object()) return std::nullopt;
+  CriterionSpec out;
+  const auto kind =
+      std::find(kCriterionWords.begin(), kCriterionWords.end(), reported_text(criterion, "kind"));
+  if (kind != kCriterionWords.end()) {
+    out.kind = static_cast<CriterionKind>(kind - kCriterionWords.begin());
+  }
+  out.confidence_level = reported<double>(criterion, "confidence", out.confidence_level);
+  out.epsilon = reported<double>(criterion, "epsilon", out.epsilon);
+  out.runs = std::max<std::int64_t>(0, reported_whole(criterion, "runs"));
+  out.paper.preset =
+      reported<std::string>(reported_member(criterion, "paper"), "preset", out.paper.preset);
+  return out;
+}
+
+std::optional<ReportedFamily> reported_family(const ReportJson& family) {
+  if (!family.is_object()) return std::nullopt;
+  return ReportedFamily{reported_or_none<std::int64_t>(family, "traces"),
+                        reported_text(family, "claim")};
+}
+
+std::vector<CoverageShare> reported_coverage(const ReportJson& coverage) {
+  std::vector<CoverageShare> out;
+  if (!coverage.is_object()) return out;
+  for (const auto& [group, share] : coverage.items()) {
+    out.push_back({group, reported_whole(share, "covered"), reported_whole(share, "all")});
+  }
+  return out;
+}
+
+std::optional<ReportedOpinion> reported_opinion(const ReportJson& opinion) {
+  if (!opinion.is_object()) return std::nullopt;
+  return ReportedOpinion{reported_text(opinion, "other"), reported_texts(opinion, "words")};
 }
 
 /// The list of what `read` makes of each entry; none if the report has no such list.
@@ -216,7 +326,13 @@ std::optional<RunReport> read_run_report(std::string_view text) {
   out.comparison = reported_text(report, "compare");
   out.criterion = reported_json(report, "criterion");
   out.simulator = reported_json(report, "simulator");
-  out.simulator_name = reported_text(reported_member(report, "simulator"), "name");
+  out.criterion_spec = reported_criterion(reported_member(report, "criterion"));
+  const auto& simulator = reported_member(report, "simulator");
+  out.simulator_name = reported_text(simulator, "name");
+  out.simulator_version = reported_text(simulator, "version");
+  out.family = reported_family(reported_member(report, "family"));
+  out.coverage = reported_coverage(reported_member(report, "coverage"));
+  out.opinion = reported_opinion(reported_member(report, "second_opinion"));
   out.interrupted = reported_or_none<bool>(report, "interrupted");
   out.traces = list_of<ReportedTrace>(report, "traces", reported_trace);
   out.discrepancies = list_of<ReportedDiscrepancy>(report, "discrepancies", reported_discrepancy);

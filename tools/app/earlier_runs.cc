@@ -1,11 +1,10 @@
 #include "tools/app/earlier_runs.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/file_io.h"
-#include "compiler/base/json.h"
+#include "harness/report/run_report.h"
 
 namespace parallax::tools {
 
@@ -15,12 +14,6 @@ namespace {
 
 constexpr std::size_t kMostFolders = 10'000;
 constexpr std::size_t kMostReportBytes = std::size_t{16} << 20U;
-
-template <typename T>
-std::optional<T> report_member(const nlohmann::json& object, const char* name) {
-  const auto* member = base::json_member(object, name);
-  return member == nullptr ? std::nullopt : base::json_as<T>(*member);
-}
 
 bool is_same_file(const std::string& a, const std::string& b) {
   std::error_code error;
@@ -33,10 +26,9 @@ bool found_one(const fs::path& folder, const std::string& scenario, std::uint64_
   base::DiagnosticSink unread;
   const auto text = base::read_file_of(folder, "report.json", unread, kMostReportBytes);
   if (!text) return false;
-  const auto report = base::parse_json(*text);
-  const auto of = report_member<std::string>(report, "scenario");
-  return of && report_member<std::string>(report, "verdict") == "discrepancy" &&
-         report_member<std::uint64_t>(report, "seed") == seed && is_same_file(*of, scenario);
+  const auto report = harness::read_run_report(*text);
+  return report && report->verdict == to_string(harness::CampaignVerdict::kDiscrepancy) &&
+         report->seed == seed && is_same_file(report->scenario, scenario);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "harness/draw/recorded_actions.h"
 #include "harness/draw/robot_drawing.h"
 #include "harness/draw/scene_svg.h"
+#include "harness/report/run_report.h"
 #include "harness/robot/ode_simulator.h"
 #include "tools/app/file_kind.h"
 #include "tools/app/recorded_run.h"
@@ -24,7 +25,6 @@
 #include "tools/cli/recording_to_draw.h"
 #include "tools/cli/replaceable.h"
 #include "tools/cli/shared_options.h"
-#include "tools/page/gather.h"
 #include "tools/page/picture_index.h"
 
 namespace parallax::tools {
@@ -159,14 +159,17 @@ DrawnParting drawn_parting(const harness::RecordedRun& run, const ScenarioModel&
                            Invocation& invocation) {
   DrawnParting out;
   Context own(invocation.form(), invocation.stop());  // a report that cannot be read is no matter
-  PageData report;
   const auto text = base::read_file_of(folder, "report.json", own.sink());
-  const bool is_over = text && add_report(*text, report);
-  const PageDiscrepancy* told = nullptr;
-  for (const auto& found : report.discrepancies) {
-    if (found.trace == run.id.trace && found.sample == run.id.sample) told = &found;
+  const auto report = text ? harness::read_run_report(*text) : std::nullopt;
+  const bool is_over = report && report->traces;
+  const harness::Discrepancy* told = nullptr;
+  if (is_over && report->discrepancies) {
+    for (const auto& one : *report->discrepancies) {
+      if (one.found.trace != run.id.trace || one.found.sample != run.id.sample) continue;
+      told = &one.found;
+      out.words = one.words;
+    }
   }
-  if (told != nullptr) out.words = told->words;
   const auto comparison = recorded_comparison(run.header).value_or(loaded.scenario.comparison());
   out.every_step = comparison == harness::Comparison::kEveryStep;
   if (run.record.path) {

@@ -239,8 +239,8 @@ std::string causes(const std::vector<PageData>& pages) {
   };
   for (std::size_t i = 0; i < pages.size(); ++i) {
     for (const auto& found : pages[i].discrepancies) {
-      auto& text = cell(found.cause, i);
-      text += (text.empty() ? "simulation " : ", ") + sample_name(found.trace, found.sample);
+      auto& text = cell(found.found.cause.text, i);
+      text += (text.empty() ? "simulation " : ", ") + found.id();
     }
     for (const auto& trace : pages[i].traces) {
       for (const auto& cause : trace.causes) {

@@ -85,7 +85,8 @@ void read_report(const std::string& folder, Context& context, PageData& page) {
   for (std::size_t i = 0; i < page.discrepancies.size(); ++i) {
     auto& found = page.discrepancies[i];
     if (found.standing.is != harness::Standing::kNotAsked) continue;
-    found.standing = harness::standing_not_asked(folder, found.trace, found.sample, i == 0);
+    found.standing =
+        harness::standing_not_asked(folder, found.found.trace, found.found.sample, i == 0);
   }
 }
 
@@ -96,11 +97,11 @@ void add_findings(const harness::JournalText& journal, PageData& page) {
   for (std::size_t i = 0; i < page.discrepancies.size() && i < kMost; ++i) {
     auto& found = page.discrepancies[i];
     const auto record =
-        journal.samples.find({found.trace, found.sample, harness::DrawPhase::kCertify});
+        journal.samples.find({found.found.trace, found.found.sample, harness::DrawPhase::kCertify});
     if (record == journal.samples.end()) continue;
     auto kept = kept_findings(page.folder, record->second);
     found.standing = harness::both_standings(found.standing, kept.standing);
-    PageFinding finding{sample_name(found.trace, found.sample), std::move(kept.confirmed)};
+    PageFinding finding{found.id(), std::move(kept.confirmed)};
     finding.sentences.insert(finding.sentences.end(), kept.thresholds.begin(),
                              kept.thresholds.end());
     if (!finding.sentences.empty()) page.findings.push_back(std::move(finding));

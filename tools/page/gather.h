@@ -26,8 +26,8 @@ base::Result<PageData> gather_page(const PageOptions& options, Context& context)
 
 // Its parts.
 
-/// Takes report.json apart, each field as far as it is there and of the right type; false if the
-/// text is no report.
+/// Adds the contents of report.json, each field as far as it is there and of the right type; false
+/// if the text is no report.
 bool add_report(const std::string& text, PageData& page);
 
 /// The simulations with their starts and ways; `page` has the report. `further`, which may be null,

@@ -74,11 +74,12 @@ PageRule rule_of(const harness::FailureRule& rule, const std::vector<std::string
 void add_rule(PageData& page) {
   constexpr std::size_t kMost = 200;  // of either kind; the search takes their square
   if (page.discrepancies.empty()) return;
-  const auto& found = page.discrepancies.front();
+  const auto& found = page.discrepancies.front().found;
   std::vector<harness::CauseRun> runs;
   std::size_t failed = 0, clean = 0;
   for (const auto& sample : page.samples) {
-    const bool fails = sample.verdict == SampleVerdict::kDiscrepancy && sample.cause == found.cause;
+    const bool fails =
+        sample.verdict == SampleVerdict::kDiscrepancy && sample.cause == found.cause.text;
     if (sample.trace != found.trace || (!fails && sample.verdict != SampleVerdict::kClean))
       continue;
     if (++(fails ? failed : clean) <= kMost) runs.push_back({sample.start, fails});

@@ -65,10 +65,10 @@ BodyWay way_of(const SampleRecord& record, const std::string& body) {
   return way;
 }
 
-const PageDiscrepancy* discrepancy_in(const PageData& page, std::int64_t trace,
-                                      std::int64_t sample) {
-  for (const auto& found : page.discrepancies) {
-    if (found.trace == trace && found.sample == sample) return &found;
+const harness::Discrepancy* discrepancy_in(const PageData& page, std::int64_t trace,
+                                           std::int64_t sample) {
+  for (const auto& one : page.discrepancies) {
+    if (one.found.trace == trace && one.found.sample == sample) return &one.found;
   }
   return nullptr;
 }
@@ -76,7 +76,7 @@ const PageDiscrepancy* discrepancy_in(const PageData& page, std::int64_t trace,
 /// Does the report say that each simulation of the trace without a discrepancy was clean?
 bool others_are_clean(const PageData& page, std::int64_t trace) {
   std::int64_t found = 0;
-  for (const auto& one : page.discrepancies) found += one.trace == trace ? 1 : 0;
+  for (const auto& one : page.discrepancies) found += one.found.trace == trace ? 1 : 0;
   return std::any_of(page.traces.begin(), page.traces.end(), [&](const PageTrace& one) {
     return one.number == trace && one.simulations > 0 &&
            one.clean + one.lost + found >= one.simulations;
@@ -214,7 +214,7 @@ class TimelineMaker {
   /// Adds the differences in report.json, also without the scenario. For an executed plan the model
   /// agrees with all observations up to the difference.
   template <typename RowOf>
-  void report(const PageDiscrepancy& found, std::size_t count, const RowOf& row_of) const {
+  void report(const harness::Discrepancy& found, std::size_t count, const RowOf& row_of) const {
     for (const auto* differing : {&found.first, &found.fluents}) {
       for (const auto& entry : *differing) {
         if (entry.timepoint < 0 || static_cast<std::size_t>(entry.timepoint) >= count) continue;
@@ -226,7 +226,7 @@ class TimelineMaker {
     }
   }
 
-  void finish(const PageDiscrepancy* found, std::map<std::string, TimelineRow>& rows,
+  void finish(const harness::Discrepancy* found, std::map<std::string, TimelineRow>& rows,
               PageTimeline& out) const {
     const auto differs = [](const TimelineRow& row, std::size_t t) {
       return row.predicted[t] != '-' && row.observed[t] != '-' &&
@@ -273,7 +273,7 @@ class TimelineMaker {
                      [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
   }
 
-  static bool is_named(const PageDiscrepancy* found, const std::string& fluent) {
+  static bool is_named(const harness::Discrepancy* found, const std::string& fluent) {
     return found != nullptr && std::any_of(found->first.begin(), found->first.end(),
                                            [&](const auto& one) { return one.fluent == fluent; });
   }
@@ -332,7 +332,7 @@ void add_journal(const harness::JournalText& journal, const harness::JournalText
     const auto* found = discrepancy_in(page, trace, sample);
     if (found != nullptr || (!has_report && was_repeated)) {
       out.verdict = SampleVerdict::kDiscrepancy;
-      out.cause = found != nullptr ? found->cause : "";
+      out.cause = found != nullptr ? found->cause.text : "";
     } else if (out.verdict != SampleVerdict::kLost && clean_otherwise[trace]) {
       out.verdict = SampleVerdict::kClean;
     }

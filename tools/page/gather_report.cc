@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
+#include <optional>
 
-#include "compiler/base/json.h"
+#include "harness/campaign/start_words.h"
 #include "harness/confidence/family.h"
 #include "harness/confidence/rounding.h"
 #include "tools/page/gather.h"
-#include "tools/page/markup.h"
 
 namespace parallax::tools {
 
@@ -45,227 +44,119 @@ std::string sample_name(std::int64_t trace, std::int64_t sample) {
 
 namespace {
 
-using nlohmann::json;
-
-/// A member of an object with this type, or the fallback if there is none.
-template <typename T>
-T field(const json& object, const char* name, T otherwise = {}) {
-  const auto* value = base::json_member(object, name);
-  if (value == nullptr) return otherwise;
-  return base::json_as<T>(*value).value_or(otherwise);
-}
-
-std::int64_t whole(const json& object, const char* name) {
-  return field<std::int64_t>(object, name);
-}
-std::string text(const json& object, const char* name) { return field<std::string>(object, name); }
-
-/// The members of a list; empty for other values.
-const json::array_t& list(const json& object, const char* name) {
-  static const json::array_t kNone;
-  const auto* value = base::json_member(object, name);
-  return value != nullptr && value->is_array() ? value->get_ref<const json::array_t&>() : kNone;
-}
-
-std::vector<std::string> texts(const json& object, const char* name) {
-  std::vector<std::string> out;
-  for (const auto& value : list(object, name)) {
-    if (value.is_string()) out.push_back(value.get<std::string>());
-  }
-  return out;
-}
-
-std::vector<PageDifference> differences(const json& object, const char* name) {
-  std::vector<PageDifference> out;
-  for (const auto& entry : list(object, name)) {
-    out.push_back({text(entry, "fluent"), whole(entry, "timepoint"),
-                   field<bool>(entry, "predicted"), field<bool>(entry, "observed")});
-  }
-  return out;
-}
-
-PagePath path_of(const json& entry) {
+PagePath path_of(const harness::PathCount& path) {
   constexpr std::size_t kMostSteps = 60;
   PagePath out;
-  const auto events = texts(entry, "events"), outcomes = texts(entry, "outcomes");
+  const auto &events = path.events, &outcomes = path.outcomes;
   for (std::size_t i = 0; i < events.size() && i < kMostSteps; ++i) {
     out.steps += (i > 0 ? ", " : "") + events[i];
     if (i < outcomes.size() && outcomes[i] != "ok") out.steps += ": " + outcomes[i];
   }
   if (events.size() > kMostSteps) out.steps += ", ...";
-  const auto detail = text(entry, "detail");
-  out.end = text(entry, "end") + (detail.empty() ? "" : ": " + detail);
-  out.simulations = whole(entry, "simulations");
-  out.example = whole(entry, "example");
+  out.end = std::string(to_string(path.end)) + (path.detail.empty() ? "" : ": " + path.detail);
+  out.simulations = path.runs;
+  out.example = path.example;
   return out;
 }
 
 /// "12 of 14 behaviours shown; each of the others comes in fewer than 5 % of executions"
-std::string covered_text(const json& cover) {
-  const auto items = whole(cover, "items"), shown = whole(cover, "shown");
-  auto out = fmt::format("{} of {} behaviours of plan and model shown", shown, items);
-  const auto bound = field<double>(cover, "bound", 1.0);
-  if (shown < items && bound < 1.0) {
+std::string covered_text(const harness::ReportedCover& cover) {
+  auto out = fmt::format("{} of {} behaviours of plan and model shown", cover.shown, cover.items);
+  if (cover.shown < cover.items && cover.bound < 1.0) {
     out += fmt::format("; each of the others comes in fewer than {} of executions ({} confidence)",
-                       harness::percent_up(bound),
-                       harness::level_text(field<double>(cover, "confidence")));
+                       harness::percent_up(cover.bound), harness::level_text(cover.confidence));
   }
-  const auto end = text(cover, "end");
-  return shown < items && !end.empty() ? out + "; ended by: " + end : out;
+  const bool is_open = cover.shown < cover.items && !cover.end.empty();
+  return is_open ? out + "; ended by: " + cover.end : out;
 }
 
-PageTrace trace_of(const json& entry) {
+PageTrace trace_of(harness::ReportedTrace& reported) {
   PageTrace out;
-  out.number = whole(entry, "trace");
-  out.verdict = text(entry, "verdict");
-  out.claim = text(entry, "claim");
-  out.caveats = texts(entry, "caveats");
-  out.simulations = whole(entry, "simulations");
-  out.clean = whole(entry, "clean");
-  out.lost = whole(entry, "lost");
-  for (const auto& lost : list(entry, "losses")) {
-    out.losses.push_back({text(lost, "reason"), whole(lost, "count"), whole(lost, "example")});
-  }
-  if (const auto* certified = base::json_member(entry, "certified")) {
-    out.certified_confidence = field<double>(*certified, "confidence");
-    out.certified_epsilon = field<double>(*certified, "epsilon", 1.0);
-  }
-  const double share = field<double>(entry, "error_share", 1.0);
+  out.number = reported.number;
+  out.verdict = std::move(reported.verdict);
+  out.claim = std::move(reported.claim);
+  out.caveats = std::move(reported.caveats);
+  out.simulations = reported.simulations.value_or(0);
+  out.clean = reported.clean.value_or(0);
+  out.lost = reported.lost.value_or(0);
+  out.losses = std::move(reported.losses);
+  out.certified_confidence = reported.confidence.value_or(0.0);
+  out.certified_epsilon = reported.epsilon.value_or(1.0);
+  const double share = reported.error_share.value_or(1.0);
   if (share > 0.0 && share <= 1.0) out.error_share = std::max(share, 1e-6);
-  if (const auto* paper = base::json_member(entry, "paper")) {
-    out.paper_variant = text(*paper, "variant");
-    if (const auto* at = base::json_member(*paper, "stopped_at")) {
-      out.paper_stopped_at = base::json_as<std::int64_t>(*at);
+  out.paper_variant = std::move(reported.paper_variant);
+  out.paper_stopped_at = reported.paper_stopped_at;
+  out.not_covered = std::move(reported.not_covered);
+  out.initial_state = std::move(reported.initial_state);
+  out.chosen_starts = reported.chosen_starts.value_or(0);
+  out.unfinished = reported.unfinished.value_or(0);
+  if (reported.cover) out.covered = covered_text(*reported.cover);
+  for (const auto& path : reported.paths) out.paths.push_back(path_of(path));
+  reported.sources.resize(reported.events.size());
+  for (std::size_t i = 0; i < reported.events.size(); ++i) {
+    out.steps.push_back({reported.events[i], reported.sources[i], {}, {}, {}});
+  }
+  if (reported.starts) {
+    const auto& starts = *reported.starts;
+    out.all_states = harness::states_text(starts);
+    for (const auto& [number, counts] : starts.states) {
+      out.states.push_back({number, counts.text, counts.clean, counts.lost, counts.discrepancies});
     }
   }
-  out.not_covered = texts(entry, "not_covered");
-  out.initial_state = texts(entry, "initial_state");
-  if (const auto* initial = base::json_member(entry, "initial_states");
-      initial != nullptr && initial->is_object()) {
-    const auto* all = base::json_member(*initial, "all");
-    const auto known = all == nullptr ? std::nullopt : base::json_as<std::int64_t>(*all);
-    out.all_states =
-        known ? std::to_string(*known) : fmt::format("more than {}", harness::kMostInitialStates);
-    for (const auto& state : list(*initial, "states")) {
-      out.states.push_back({whole(state, "state"), text(state, "holds"), whole(state, "clean"),
-                            whole(state, "lost"), whole(state, "discrepancies")});
-    }
-  }
-  out.chosen_starts = whole(entry, "chosen_starts");
-  out.unfinished = whole(entry, "unfinished");
-  if (const auto* cover = base::json_member(entry, "until_covered")) {
-    out.covered = covered_text(*cover);
-  }
-  for (const auto& path : list(entry, "paths")) out.paths.push_back(path_of(path));
-  const auto& sources = list(entry, "sources");
-  for (std::size_t i = 0; const auto& event : texts(entry, "events")) {
-    const bool is_known = i < sources.size() && sources[i].is_string();
-    out.steps.push_back({event, is_known ? sources[i].get<std::string>() : "", {}, {}, {}});
-    ++i;
-  }
-  for (const auto& cause : list(entry, "causes")) {
-    out.causes.push_back({text(cause, "cause"), whole(cause, "count"), field<double>(cause, "rate"),
-                          field<double>(cause, "lower"), field<double>(cause, "upper", 1.0)});
+  for (const auto& cause : reported.causes) {
+    out.causes.push_back({cause.cause, cause.count, cause.rate, cause.lower, cause.upper});
   }
   return out;
 }
 
-PageDiscrepancy discrepancy_of(const json& entry) {
-  PageDiscrepancy out;
-  out.trace = whole(entry, "trace");
-  out.sample = whole(entry, "sample");
-  out.first_divergence = whole(entry, "first_divergence");
-  out.words = text(entry, "words");
-  out.kind = text(entry, "kind");
-  out.repeated = text(entry, "repeated");
-  if (const auto* cause = base::json_member(entry, "cause")) {
-    out.cause = text(*cause, "text");
-    out.reason = text(*cause, "reason");
-  }
-  if (out.words.empty()) out.words = out.cause;
-  if (const auto* standing = base::json_member(entry, "standing")) {
-    out.standing = {harness::standing_named(text(*standing, "is")), text(*standing, "words")};
-  }
-  if (const auto* differs = base::json_member(entry, "differs")) {
-    out.parting_event = field<std::int64_t>(*differs, "event");
-  }
-  out.first = differences(entry, "first");
-  out.fluents = differences(entry, "fluents");
-  if (const auto* start = base::json_member(entry, "start");
-      start != nullptr && start->is_object()) {
-    for (const auto& [name, value] : start->items()) {
-      out.start.emplace_back(name, value.is_number()       ? number(value.get<double>())
-                                   : value.is_string()     ? value.get<std::string>()
-                                   : value.is_structured() ? "..."
-                                                           : base::json_text(value));
-    }
-  }
-  return out;
-}
-
-std::optional<harness::SpendingRule> spending_of(const json& report) {
-  const auto* family = base::json_member(report, "family");
-  if (family == nullptr || !family->is_object()) return std::nullopt;
-  const auto traces = whole(*family, "traces");
+std::optional<harness::SpendingRule> spending_of(
+    const std::optional<harness::ReportedFamily>& family) {
+  if (!family) return std::nullopt;
+  const auto traces = family->traces.value_or(0);
   constexpr std::int64_t kMost = 1'000'000;
   return harness::SpendingRule(traces > 0 ? std::optional(std::min(traces, kMost)) : std::nullopt);
 }
 
-void add_criterion(const json& criterion, const std::optional<harness::SpendingRule>& spending,
-                   PageData& page) {
-  const auto kind = text(criterion, "kind");
-  page.confidence = std::clamp(field<double>(criterion, "confidence", 0.99), 0.01, 1.0 - 1e-9);
-  page.epsilon = std::clamp(field<double>(criterion, "epsilon", 0.05), 1e-9, 1.0 - 1e-9);
-  page.is_paper = kind == "paper";
-  auto& spec = page.asked;
-  spec.confidence_level = page.confidence;
-  spec.epsilon = page.epsilon;
-  for (std::size_t i = 0; i < harness::kCriterionWords.size(); ++i) {
-    if (kind == harness::kCriterionWords[i]) spec.kind = static_cast<harness::CriterionKind>(i);
-  }
-  spec.runs = std::max<std::int64_t>(0, whole(criterion, "runs"));
-  if (page.is_paper) {
-    if (const auto* paper = base::json_member(criterion, "paper")) {
-      spec.paper.preset = text(*paper, "preset");
-    }
-  }
+void add_criterion(harness::CriterionSpec spec,
+                   const std::optional<harness::SpendingRule>& spending, PageData& page) {
+  spec.confidence_level = std::clamp(spec.confidence_level, 0.01, 1.0 - 1e-9);
+  spec.epsilon = std::clamp(spec.epsilon, 1e-9, 1.0 - 1e-9);
   page.criterion = harness::criterion_text(spec, spending);
+  page.confidence = spec.confidence_level;
+  page.epsilon = spec.epsilon;
+  page.is_paper = spec.kind == harness::CriterionKind::kPaper;
+  page.asked = std::move(spec);
 }
 
 }  // namespace
 
-bool add_report(const std::string& source, PageData& page) {
-  const auto report = base::parse_json(source);
-  if (!report.is_object() || base::json_member(report, "traces") == nullptr) return false;
-  page.scenario = text(report, "scenario");
-  page.verdict = text(report, "verdict");
-  page.seed = field<std::uint64_t>(report, "seed");
-  page.simulations = whole(report, "simulations");
-  page.tool_version = text(report, "tool_version");
-  page.exploration = text(report, "exploration");
-  page.interrupted = field<bool>(report, "interrupted");
-  page.closed_loop = text(report, "execution") == "closed-loop";
-  if (const auto* simulator = base::json_member(report, "simulator")) {
-    page.simulator = text(*simulator, "name") + ' ' + text(*simulator, "version");
+bool add_report(const std::string& text, PageData& page) {
+  auto report = harness::read_run_report(text);
+  if (!report || !report->traces) return false;
+  page.scenario = report->scenario;
+  page.verdict = report->verdict;
+  page.seed = report->seed.value_or(0);
+  page.simulations = report->simulations.value_or(0);
+  page.tool_version = report->tool_version;
+  page.exploration = report->exploration;
+  page.interrupted = report->interrupted.value_or(false);
+  page.closed_loop = report->execution == to_string(harness::Execution::kClosedLoop);
+  if (!report->simulator.empty()) {
+    page.simulator = report->simulator_name + ' ' + report->simulator_version;
   }
-  if (const auto* criterion = base::json_member(report, "criterion")) {
-    add_criterion(*criterion, spending_of(report), page);
+  if (report->criterion_spec) {
+    add_criterion(*report->criterion_spec, spending_of(report->family), page);
   }
-  if (const auto* family = base::json_member(report, "family")) page.claim = text(*family, "claim");
-  for (const auto& entry : list(report, "traces")) page.traces.push_back(trace_of(entry));
-  for (const auto& entry : list(report, "discrepancies")) {
-    page.discrepancies.push_back(discrepancy_of(entry));
+  if (report->family) page.claim = report->family->claim;
+  for (auto& trace : *report->traces) page.traces.push_back(trace_of(trace));
+  if (report->discrepancies) page.discrepancies = *std::move(report->discrepancies);
+  for (const auto& share : report->coverage) {
+    page.coverage.push_back(
+        {share.group, std::to_string(share.covered), std::to_string(share.all)});
   }
-  if (const auto* coverage = base::json_member(report, "coverage");
-      coverage != nullptr && coverage->is_object()) {
-    for (const auto& [group, share] : coverage->items()) {
-      page.coverage.push_back(
-          {group, std::to_string(whole(share, "covered")), std::to_string(whole(share, "all"))});
-    }
-  }
-  if (const auto* opinion = base::json_member(report, "second_opinion")) {
-    page.opinion_of = text(*opinion, "other");
-    page.opinion_sentences = texts(*opinion, "words");
+  if (report->opinion) {
+    page.opinion_of = report->opinion->other;
+    page.opinion_sentences = report->opinion->sentences;
   }
   if (page.interrupted) {
     page.banners.push_back("The run was interrupted: what is claimed is what it had come to.");

@@ -10,7 +10,7 @@
 
 #include "harness/campaign/campaign_result.h"
 #include "harness/confidence/criterion_spec.h"
-#include "harness/report/standing.h"
+#include "harness/report/run_report.h"
 
 namespace parallax::harness {
 struct Recording;
@@ -60,21 +60,6 @@ struct PageTimeline {
   std::vector<PageStep> steps;
   std::vector<TimelineRow> rows;       // those that differ first
   std::optional<std::size_t> parting;  // timepoint of the first difference
-};
-
-struct PageDifference {
-  std::string fluent;
-  std::int64_t timepoint = 0;
-  bool predicted = false, observed = false;
-};
-
-struct PageDiscrepancy {
-  std::int64_t trace = 0, sample = 0, first_divergence = 0;
-  std::optional<std::int64_t> parting_event;
-  std::string words, cause, reason, repeated, kind;
-  harness::DiscrepancyStanding standing;  // by the run's second opinion and `confirm`
-  std::vector<PageDifference> first, fluents;
-  std::vector<std::pair<std::string, std::string>> start;  // variable, value
 };
 
 /// How often one cause ended simulations; rates with their interval.
@@ -266,7 +251,7 @@ struct PageData {
   bool is_paper = false;             // the criterion that ends a trace is the paper's
   std::vector<std::string> banners;  // what is missing or wrong, one sentence each
   std::vector<PageTrace> traces;
-  std::vector<PageDiscrepancy> discrepancies;
+  std::vector<harness::ReportedDiscrepancy> discrepancies;
   std::vector<std::array<std::string, 3>> coverage;  // group, covered, all
   std::vector<PageTimeline> timelines;
   std::size_t timelines_left_out = 0;

@@ -143,7 +143,7 @@ PlottedVariables plotted_variables(const PageData& page) {
   PlottedVariables out;
   // Starts of different traces may have little in common: only the trace with the first discrepancy
   // is plotted.
-  if (!page.discrepancies.empty()) out.trace = page.discrepancies.front().trace;
+  if (!page.discrepancies.empty()) out.trace = page.discrepancies.front().found.trace;
   for (const auto& sample : page.samples) {
     if (!out.trace || sample.trace == *out.trace) out.samples.push_back(&sample);
   }

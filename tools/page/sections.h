@@ -42,7 +42,7 @@ class SourceLinks {
 std::string verdict_section(const PageData& page);
 /// The discrepancy of the headline: the first one that is not in doubt, or else the first. Null
 /// where there is none.
-const PageDiscrepancy* told_discrepancy(const PageData& page);
+const harness::ReportedDiscrepancy* told_discrepancy(const PageData& page);
 /// Whether the discrepancy of the headline is in doubt.
 bool is_in_doubt(const PageData& page);
 /// The claims, each with its subject, those about the traces that decided the verdict first;

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <variant>
 
 #include "compiler/base/ascii.h"
 #include "compiler/base/words.h"
@@ -33,7 +35,7 @@ std::string replay_words(const PageData& page, std::int64_t trace, std::int64_t 
                      sample_name(trace, sample));
 }
 
-const PageDiscrepancy* told_discrepancy(const PageData& page) {
+const harness::ReportedDiscrepancy* told_discrepancy(const PageData& page) {
   if (page.discrepancies.empty()) return nullptr;
   const auto found =
       std::find_if(page.discrepancies.begin(), page.discrepancies.end(),
@@ -62,7 +64,7 @@ std::string verdict_title(const PageData& page) {
 }
 
 /// The discrepancy between model and world, with its standing.
-std::string discrepancy_lead(const PageDiscrepancy& found) {
+std::string discrepancy_lead(const harness::ReportedDiscrepancy& found) {
   auto out = "<p class=\"lead\">" + html_words(found.words) + ".</p>\n";
   auto words = found.standing.words;
   if (words.empty()) return out;
@@ -75,12 +77,12 @@ std::string fact(std::string_view name, std::string_view value) {
   return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", name, html_short(value));
 }
 
-std::string differences_table(const PageDiscrepancy& found) {
-  const auto in_first = [&](const PageDifference& one) {
+std::string differences_table(const harness::Discrepancy& found) {
+  const auto in_first = [&](const harness::DivergingFluent& one) {
     return std::any_of(found.first.begin(), found.first.end(),
                        [&](const auto& other) { return other.fluent == one.fluent; });
   };
-  const auto row = [](const PageDifference& one, bool follows) {
+  const auto row = [](const harness::DivergingFluent& one, bool follows) {
     return fmt::format(
         "<tr{}><th scope=\"row\">{}{}</th><td data-label=\"Predicted\">{}</td>"
         "<td data-label=\"Observed\">{}</td><td class=\"num\" data-label=\"At\">{}</td></tr>\n",
@@ -101,7 +103,7 @@ std::string differences_table(const PageDiscrepancy& found) {
          rows + "</tbody></table></div>\n";
 }
 
-const PageTimeline* timeline_of(const PageData& page, const PageDiscrepancy& found) {
+const PageTimeline* timeline_of(const PageData& page, const harness::Discrepancy& found) {
   for (const auto& timeline : page.timelines) {
     if (timeline.trace == found.trace && timeline.sample == found.sample) return &timeline;
   }
@@ -109,12 +111,12 @@ const PageTimeline* timeline_of(const PageData& page, const PageDiscrepancy& fou
 }
 
 /// The event at which they part: the one that ends at the first difference, or as `cause` names it.
-std::optional<std::size_t> parting_step(const PageDiscrepancy& found,
+std::optional<std::size_t> parting_step(const harness::Discrepancy& found,
                                         const std::vector<PageStep>& steps) {
-  if (found.parting_event && *found.parting_event >= 0) {
-    return static_cast<std::size_t>(*found.parting_event);
+  if (found.path && found.path->event >= 0) {
+    return static_cast<std::size_t>(found.path->event);
   }
-  const auto name = found.cause.substr(0, found.cause.find(": "));
+  const auto name = found.cause.text.substr(0, found.cause.text.find(": "));
   for (auto i = static_cast<std::size_t>(std::max<std::int64_t>(found.first_divergence, 1) - 1);
        i < steps.size(); ++i) {
     if (steps[i].event == name) return i;
@@ -122,11 +124,21 @@ std::optional<std::size_t> parting_step(const PageDiscrepancy& found,
   return std::nullopt;
 }
 
-std::string start_table(const PageDiscrepancy& found) {
-  if (found.start.empty()) return {};
+/// A value of the start as text.
+struct ValueText {
+  std::string operator()(double value) const { return std::isnan(value) ? "null" : number(value); }
+  std::string operator()(std::int64_t value) const { return number(static_cast<double>(value)); }
+  std::string operator()(bool value) const { return value ? "true" : "false"; }
+  std::string operator()(const std::string& value) const { return value; }
+};
+
+std::string start_table(const harness::Discrepancy& found) {
+  if (found.record.initial.empty()) return {};
   std::string out =
       "<details><summary>Start state of this simulation</summary><dl class=\"facts\">\n";
-  for (const auto& [name, value] : found.start) out += fact(html_short(name), value);
+  for (const auto& [name, value] : found.record.initial) {
+    out += fact(html_short(name), std::visit(ValueText(), value));
+  }
   return out + "</dl></details>\n";
 }
 
@@ -208,7 +220,8 @@ std::string rule_html(const PageRule& rule) {
 std::vector<std::string> claims_of(const PageData& page) {
   // The trace of the first discrepancy comes first.
   const auto rank = [&](const PageTrace& trace) {
-    if (!page.discrepancies.empty() && trace.number == page.discrepancies.front().trace) return 0;
+    if (!page.discrepancies.empty() && trace.number == page.discrepancies.front().found.trace)
+      return 0;
     return trace.verdict == page.verdict ? 1 : 2;
   };
   std::vector<std::string> out;
@@ -286,17 +299,18 @@ std::string discrepancy_section(const PageData& page, const SourceLinks& links) 
   constexpr std::size_t kMost = 20;
   std::string out;
   for (std::size_t i = 0; i < page.discrepancies.size() && i < kMost; ++i) {
-    const auto& found = page.discrepancies[i];
+    const auto& reported = page.discrepancies[i];
+    const auto& found = reported.found;
     const auto* timeline = timeline_of(page, found);
     std::vector<PageStep> steps = timeline != nullptr ? timeline->steps : std::vector<PageStep>();
     for (const auto& trace : page.traces) {
       if (steps.empty() && trace.number == found.trace) steps = trace.steps;
     }
     const auto marked = parting_step(found, steps);
-    out += fmt::format("<article><h3>Simulation {}</h3>\n", sample_name(found.trace, found.sample));
-    if (&found != told_discrepancy(page)) out += discrepancy_lead(found);
-    if (!found.reason.empty()) {
-      out += "<p>The simulator says: " + html_words(found.reason) + ".</p>\n";
+    out += fmt::format("<article><h3>Simulation {}</h3>\n", reported.id());
+    if (&reported != told_discrepancy(page)) out += discrepancy_lead(reported);
+    if (!found.cause.reason.empty()) {
+      out += "<p>The simulator says: " + html_words(found.cause.reason) + ".</p>\n";
     }
     out += steps_table(steps, marked, links);
     out += differences_table(found);

@@ -8,7 +8,7 @@
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/file_io.h"
-#include "compiler/base/json.h"
+#include "harness/report/run_report.h"
 #include "tools/app/evidence.h"
 
 namespace parallax::tools {
@@ -31,9 +31,9 @@ bool is_finished(const fs::path& folder) {
   base::DiagnosticSink unread;
   const auto text = base::read_file_of(folder, "report.json", unread);
   if (!text) return false;
-  const auto report = base::parse_json(*text);
-  const auto* verdict = base::json_member(report, "verdict");
-  return verdict != nullptr && *verdict != "inconclusive";
+  const auto report = harness::read_run_report(*text);
+  return report && !report->verdict.empty() &&
+         report->verdict != to_string(harness::CampaignVerdict::kInconclusive);
 }
 
 /// Adds further runs of the same scenario: those that `explain` made to find the kind of cause,

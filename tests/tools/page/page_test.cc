@@ -42,14 +42,14 @@ PageData page_named(const std::string& name, std::int64_t samples) {
   trace.steps = {{name, name + ":1", {}, {}, {}}};
   trace.causes = {{name, 1, 0.1, 0.0, 0.2}};
   page.traces = {trace};
-  PageDiscrepancy found;
+  auto& reported = page.discrepancies.emplace_back();
+  reported.words = name;
+  auto& found = reported.found;
   found.trace = found.sample = 1;
   found.first_divergence = 1;
-  found.words = found.reason = found.kind = name;
-  found.cause = name;
+  found.cause.text = found.cause.reason = name;
   found.first = {{name, 1, true, false}};
-  found.start = {{name, name}};
-  page.discrepancies = {found};
+  found.record.initial = {{name, name}};
   page.coverage = {{name, "1", "2"}};
   PageTimeline timeline;
   timeline.trace = timeline.sample = 1;
@@ -293,7 +293,7 @@ TEST_CASE("what is claimed is told of the trace that decided the verdict first")
   page.traces[0].claim = "the claim of one";
   page.traces[1].number = 2;
   page.traces[1].claim = "the claim of two";
-  page.discrepancies[0].trace = 2;
+  page.discrepancies[0].found.trace = 2;
   for (const auto& text : {run_page(page), comparison_page({page, page_named("other", 3)})}) {
     const auto shown = check_html(text).text;
     const auto two = shown.find("the claim of two"), one = shown.find("the claim of one");
