@@ -8,6 +8,7 @@
 #include "compiler/asp/completion_rules.h"
 #include "compiler/asp/formula_writer.h"
 #include "compiler/asp/term_writer.h"
+#include "compiler/base/ground_name.h"
 #include "compiler/sema/typed_model.h"
 
 namespace parallax::compiler {
@@ -179,7 +180,7 @@ class OpenAtoms {
       : model_(model), names_(names), given_(options.open_atoms.has_value()) {
     if (!given_) return;
     for (const auto& atom : *options.open_atoms) {
-      const auto symbol = model.find_symbol(std::string_view(atom).substr(0, atom.find('(')));
+      const auto symbol = model.find_symbol(base::symbol_of(atom));
       const auto written = names.printed(atom);
       const auto arguments = std::min(written.find('('), written.size());
       if (symbol) atoms_[symbol->index()].push_back(written.substr(arguments));

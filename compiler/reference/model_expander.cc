@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "compiler/base/ground_name.h"
+
 namespace parallax::compiler {
 
 ModelExpander::ModelExpander(const TypedModel& model, ReferenceBudget& budget, ExpandedModel& out)
@@ -66,7 +68,7 @@ void ModelExpander::number_atoms() {
     const auto& text = terms_.text(value);
     out_.fluent_numbers_.emplace(text, static_cast<std::uint32_t>(out_.fluents_.size()));
     out_.fluents_.push_back(text);
-    const auto symbol = model_.find_symbol(text.substr(0, text.find('(')));
+    const auto symbol = model_.find_symbol(base::symbol_of(text));
     out_.fluent_symbols_.push_back(&model_.symbols[*symbol]);
   }
   for (const auto value : terms_.domain(*model_.core.event)) {

@@ -19,6 +19,7 @@
 #include <algorithm>
 
 #include "compiler/base/contract.h"
+#include "compiler/base/ground_name.h"
 
 namespace parallax::compiler {
 namespace {
@@ -305,7 +306,7 @@ void ReferenceEvaluator::note_strange_atoms(const Valuation& valuation, std::siz
   scan(valuation.happens, "Happens", last - 1, is_event);
   for (const auto& text : valuation.predicates) {
     if (expanded_.predicate(text)) continue;
-    const auto symbol = model_.find_symbol(text.substr(0, text.find('(')));
+    const auto symbol = model_.find_symbol(base::symbol_of(text));
     if (!symbol || model_.symbols[*symbol].kind != SymbolKind::kPredicate) {
       note("there is no " + text, 0);
       continue;

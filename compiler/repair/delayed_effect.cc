@@ -4,6 +4,7 @@
 #include <cctype>
 #include <set>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/syntax/printer.h"
 
 namespace parallax::compiler {
@@ -86,7 +87,8 @@ void add_delays(const ModelAst& model, const TypedModel& typed, const std::vecto
   for (const auto& step : scope.steps) {
     for (const auto& late : step.late) {
       for (const auto& fluent : late.fluents) {
-        next_of[{symbol_of(step.event), symbol_of(fluent), late.by}].insert(symbol_of(late.event));
+        next_of[{base::symbol_of(step.event), base::symbol_of(fluent), late.by}].insert(
+            base::symbol_of(late.event));
       }
     }
   }

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/repair/delayed_effect.h"
 #include "compiler/repair/edit_subject.h"
 #include "compiler/repair/effect_bundle.h"
@@ -20,15 +21,13 @@ EditSubject subject_of(const ModelAst& model, const TypedModel& typed,
                   scope.more_events,
                   scope.more_fluents};
   for (const auto& step : scope.steps) {
-    out.events.insert(symbol_of(step.event));
-    for (const auto& [fluent, holds] : step.differing) out.fluents.insert(symbol_of(fluent));
+    out.events.insert(base::symbol_of(step.event));
+    for (const auto& [fluent, holds] : step.differing) out.fluents.insert(base::symbol_of(fluent));
   }
   return out;
 }
 
 }  // namespace
-
-std::string symbol_of(const std::string& ground) { return ground.substr(0, ground.find('(')); }
 
 std::vector<std::string> arguments_of(const std::string& ground) {
   std::vector<std::string> out;

@@ -84,8 +84,7 @@ struct EditScope {
   bool alternatives = false;
 };
 
-/// The event's symbol, and its arguments.
-std::string symbol_of(const std::string& ground);
+/// The arguments of a ground atom: {"milk1", "pTable"} for "ItemAt(milk1,pTable)".
 std::vector<std::string> arguments_of(const std::string& ground);
 
 /// Every single edit of the grammar in the scope, in a fixed order. Edits of one kind on one axiom

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "compiler/base/ground_name.h"
+
 namespace parallax::compiler {
 namespace {
 
@@ -61,7 +63,7 @@ bool could_be(const ConditionLiteral& literal, bool value, const Values& values,
 /// The values of the event's arguments in the step; none where it is another event.
 std::optional<Values> bind(const std::vector<std::string>& arguments, const std::string& symbol,
                            const EditScope::Step& step, const std::vector<std::string>& variables) {
-  if (symbol_of(step.event) != symbol) return std::nullopt;
+  if (base::symbol_of(step.event) != symbol) return std::nullopt;
   const auto ground = arguments_of(step.event);
   if (ground.size() != arguments.size()) return std::nullopt;
   Values values;

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/repair/edit_relevance.h"
 
 namespace parallax::compiler {
@@ -36,7 +37,7 @@ class BundleMaker {
 
   void make() {
     for (const auto& step : scope_.steps) {
-      const auto event = typed_.find_symbol(symbol_of(step.event));
+      const auto event = typed_.find_symbol(base::symbol_of(step.event));
       if (!event || typed_.symbols[*event].kind != SymbolKind::kEvent) continue;
       if (typed_.symbols[*event].arguments.size() != arguments_of(step.event).size()) continue;
       for (const auto& group : groups_of(changes_of(step))) {
@@ -51,13 +52,13 @@ class BundleMaker {
     for (const auto& [fluent, holds] : step.differing) {
       const auto before = step.before.find(fluent);
       if (before != step.before.end() && before->second == holds) continue;
-      const auto symbol = typed_.find_symbol(symbol_of(fluent));
+      const auto symbol = typed_.find_symbol(base::symbol_of(fluent));
       if (!symbol || typed_.symbols[*symbol].kind != SymbolKind::kFluent) continue;
       // A defined fluent follows from the others.
       if (typed_.symbols[*symbol].noninertial) continue;
       auto arguments = arguments_of(fluent);
       if (arguments.size() != typed_.symbols[*symbol].arguments.size()) continue;
-      out.push_back({symbol_of(fluent), std::move(arguments), holds});
+      out.push_back({base::symbol_of(fluent), std::move(arguments), holds});
     }
     return out;
   }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/repair/edit_subject.h"
 
 namespace parallax::compiler {
@@ -22,7 +23,7 @@ class EventEdits {
     const auto axioms = effects_of(event);
     bool refused = false, not_possible = false;
     for (const auto& step : subject_.scope.steps) {
-      if (symbol_of(step.event) != event) continue;
+      if (base::symbol_of(step.event) != event) continue;
       refused = refused || step.refused;
       not_possible = not_possible || step.not_possible;
     }

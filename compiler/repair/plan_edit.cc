@@ -6,6 +6,7 @@
 #include <cctype>
 #include <tuple>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/repair/edit_grammar.h"
 
 namespace parallax::compiler {
@@ -352,7 +353,7 @@ std::string plan_name(const std::string& model_name) {
 }
 
 std::string plan_condition(const std::string& fluent, bool holds) {
-  std::string question = "(holds '(" + plan_name(symbol_of(fluent));
+  std::string question = "(holds '(" + plan_name(base::symbol_of(fluent));
   for (const auto& argument : arguments_of(fluent)) question += " " + plan_name(argument);
   question += "))";
   return holds ? question : "(not " + question + ")";

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/repair/condition_literal.h"
 #include "compiler/repair/edit_grammar.h"
 #include "compiler/repair/edit_text.h"
@@ -28,7 +29,7 @@ std::string lifted(const std::string& ground, const Names& terms) {
     const auto found = terms.find(argument);
     list += (list.empty() ? "" : ",") + (found == terms.end() ? argument : found->second);
   }
-  return symbol_of(ground) + "(" + list + ")";
+  return base::symbol_of(ground) + "(" + list + ")";
 }
 
 bool has_word(const std::string& text, const std::string& word) {
@@ -99,7 +100,7 @@ class PartWriter {
   std::optional<Names> values(std::size_t axiom) const {
     const auto& form = forms_[axiom];
     if (form.kind != AxiomForm::Kind::kEffects) return std::nullopt;
-    if (form.event_symbol != symbol_of(step_.event)) return std::nullopt;
+    if (form.event_symbol != base::symbol_of(step_.event)) return std::nullopt;
     const auto& event = ast(axiom)[form.event];
     const auto arguments = arguments_of(step_.event);
     if (event.child_count != arguments.size()) return std::nullopt;
@@ -278,7 +279,7 @@ class PartWriter {
   /// Variables for the constants of an atom that have none yet, called by their sorts.
   void name_arguments(const std::string& ground, Names& terms,
                       std::vector<std::string>& variables) const {
-    const auto symbol = typed_.find_symbol(symbol_of(ground));
+    const auto symbol = typed_.find_symbol(base::symbol_of(ground));
     if (!symbol) return;
     const auto& sorts = typed_.symbols[*symbol].arguments;
     const auto arguments = arguments_of(ground);
@@ -302,7 +303,7 @@ class PartWriter {
       for (const auto effect : forms_[refuted.axiom].effects) {
         const auto parts = effect_parts(tree, effect);
         if (tree.name(tree[effect]) != "Initiates") continue;
-        if (tree.name(tree[parts->fluent]) == symbol_of(fluent)) return &refuted;
+        if (tree.name(tree[parts->fluent]) == base::symbol_of(fluent)) return &refuted;
       }
     }
     return refuted_.empty() ? nullptr : &refuted_.front();
@@ -312,7 +313,7 @@ class PartWriter {
   void add_at_end(const std::string& text) {
     std::optional<std::size_t> last;
     for (std::size_t i = 0; i < forms_.size(); ++i) {
-      if (forms_[i].event_symbol == symbol_of(step_.event)) last = i;
+      if (forms_[i].event_symbol == base::symbol_of(step_.event)) last = i;
     }
     if (last) return add_behind(*last, text);
     for (auto place = model_.order.rbegin(); place != model_.order.rend(); ++place) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/base/hash.h"
 
 namespace parallax::runtime {
@@ -25,7 +26,7 @@ Names sorted(const compiler::SymbolTable& symbols, std::span<const Id> ids) {
 
 /// Instances of one symbol stand together in declaration order, but nothing is taken for granted.
 void add(std::vector<SymbolInstances>& symbols, const std::string& atom, std::size_t id) {
-  const auto symbol = atom.substr(0, atom.find('('));
+  const auto symbol = base::symbol_of(atom);
   if (symbols.empty() || symbols.back().symbol != symbol) {
     const auto known = std::find_if(symbols.begin(), symbols.end(),
                                     [&](const auto& one) { return one.symbol == symbol; });

@@ -7,6 +7,7 @@
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
+#include "compiler/base/ground_name.h"
 #include "compiler/base/suggest.h"
 #include "runtime/consequences/abduction.h"
 #include "runtime/explain/contradiction.h"
@@ -82,7 +83,7 @@ class FactReasons {
 };
 
 bool is_instance(const std::string& ground, const std::string& asked) {
-  return ground == asked || ground.substr(0, ground.find('(')) == asked;
+  return ground == asked || base::symbol_of(ground) == asked;
 }
 
 }  // namespace
@@ -137,7 +138,7 @@ base::Result<Abduction> abduce(const CompiledModel& model, const AbductionQuery&
     std::vector<std::string> names;
     for (const auto& declared : model.events) {
       is_known = is_known || is_instance(declared.name, event);
-      names.push_back(declared.name.substr(0, declared.name.find('(')));
+      names.push_back(base::symbol_of(declared.name));
     }
     if (is_known) continue;
     auto error = context.sink().error_about(codes::kNoSuchEvent, "--abduce", event);

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "compiler/base/ground_name.h"
 #include "harness/campaign/loop_judge.h"
 #include "harness/campaign/loop_samples.h"
 
@@ -23,8 +24,6 @@ namespace {
 compiler::PlanStepId plan_step(LocationId id) {
   return compiler::PlanStepId(static_cast<std::uint32_t>(id.index()));
 }
-
-std::string symbol_of(const std::string& event) { return event.substr(0, event.find('(')); }
 
 harness::CoverItem item_of(const CoverageKey& key) {
   const auto what = key.group == CoverageGroup::kHandlers ? "handler of " + key.id
@@ -113,7 +112,7 @@ void ScenarioCoverWatch::add_targets() {
   const auto& typed = *loaded_.compilation.typed;
   for (const auto& event : model.events) {
     if (!event.slot || idle_or_performed.contains(*event.slot)) continue;
-    const auto name = symbol_of(event.name);
+    const auto name = base::symbol_of(event.name);
     const auto symbol = typed.find_symbol(name);
     if (!symbol) continue;
     auto& target = by_symbol[name];
@@ -277,7 +276,7 @@ std::vector<std::size_t> ScenarioCoverWatch::shown_by(const harness::SampleRecor
   if (const auto trace = loop_.trace_of(steps, steps.size(), states)) {
     for (std::size_t t = 0; t < trace->points.size(); ++t) {
       for (const auto event : trace->happens(t)) {
-        const auto found = demanded_.find(symbol_of(std::string(event)));
+        const auto found = demanded_.find(base::symbol_of(event));
         if (found != demanded_.end()) show(found->second);
       }
     }

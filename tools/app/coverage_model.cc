@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/base/utf8.h"
 #include "compiler/base/words.h"
 #include "tools/app/coverage_plan.h"
@@ -60,7 +61,7 @@ std::set<CoverageKey> ModelCoverage::covered_by(const runtime::Trace& trace) con
 }
 
 std::optional<CoverageKey> ModelCoverage::event(std::string_view name) const {
-  const auto symbol = model_.find_symbol(name.substr(0, name.find('(')));
+  const auto symbol = model_.find_symbol(base::symbol_of(name));
   return symbol ? std::optional(event(model_.symbols[*symbol])) : std::nullopt;
 }
 

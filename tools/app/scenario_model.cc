@@ -10,6 +10,7 @@
 #include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/ground_name.h"
 #include "compiler/plan/plan_files.h"
 #include "compiler/syntax/lexer.h"
 #include "harness/campaign/campaign.h"
@@ -209,7 +210,7 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
   }
   if (switches.watched) {
     std::erase_if(events, [&](const std::string& event) {
-      const auto symbol = event.substr(0, event.find('('));
+      const auto symbol = base::symbol_of(event);
       const auto& unobserved = scenario->unobserved;
       const auto& actions = scenario->actions;
       return std::find(unobserved.begin(), unobserved.end(), symbol) != unobserved.end() &&

@@ -7,6 +7,7 @@
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/ground_name.h"
 #include "compiler/base/suggest.h"
 #include "compiler/plan/plan_binding.h"
 #include "compiler/plan/plan_graph.h"
@@ -24,15 +25,11 @@ using runtime::StepWindows;
 /// repetition is detected.
 constexpr std::int64_t kMostTimepoints = 120;
 
-std::string printed_symbol(std::string_view printed) {
-  return std::string(printed.substr(0, printed.find('(')));
-}
-
 /// The events of these symbols.
 base::Result<std::vector<EventId>> events_of(const std::vector<std::string>& symbols,
                                              const CompiledModel& model, Context& context) {
   std::vector<std::string> known;
-  for (const auto& event : model.events) known.push_back(printed_symbol(event.name));
+  for (const auto& event : model.events) known.push_back(base::symbol_of(event.name));
   std::vector<EventId> out;
   for (const auto& symbol : symbols) {
     bool found = false;
@@ -74,7 +71,7 @@ void note_unseen(const harness::Scenario& scenario, const CompiledModel& model,
   if (scenario.plan.empty()) return;
   const auto symbols = performable(scenario);
   for (std::uint32_t e = 0; e < model.events.size(); ++e) {
-    if (symbols.contains(printed_symbol(model.events[e].name))) options.performed.emplace_back(e);
+    if (symbols.contains(base::symbol_of(model.events[e].name))) options.performed.emplace_back(e);
   }
   const auto is_in = [](const std::vector<EventId>& events, EventId event) {
     return std::find(events.begin(), events.end(), event) != events.end();

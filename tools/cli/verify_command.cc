@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "compiler/base/codes/files.h"
+#include "compiler/base/ground_name.h"
 #include "compiler/base/json.h"
 #include "compiler/base/temporary_folder.h"
 #include "harness/config/ledger.h"
@@ -130,7 +131,7 @@ std::vector<PerformedStep> steps_at(const compiler::CompiledModel& model,
     PerformedStep step{std::string(event), {}, {}};
     if (point.plan_step) {
       const auto& performed = model.plan[*point.plan_step];
-      const auto symbol = performed.event.substr(0, performed.event.find('('));
+      const auto symbol = base::symbol_of(performed.event);
       // Other events of the timepoint are the model's own.
       if (event.starts_with(symbol + '(')) {
         step.place = place_text(performed.place);

@@ -18,6 +18,7 @@
 #include <set>
 #include <utility>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/base/hash.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/trial.h"
@@ -145,7 +146,7 @@ class SequenceExplorer {
   void find_events(const harness::ExecutablePlan& plan) {
     std::set<std::string> names, symbols;
     for (auto& perform : plan.performs()) {
-      symbols.insert(perform.event.substr(0, perform.event.find('(')));
+      symbols.insert(base::symbol_of(perform.event));
       if (names.insert(perform.event).second && can_be_called(perform)) {
         events_.push_back(std::move(perform));
       }
@@ -154,7 +155,7 @@ class SequenceExplorer {
       if (events_.size() > kMostEvents) break;
       harness::PlannedPerform other;
       other.event = symbols_->name(compiler::EventId(i));
-      if (!symbols.contains(other.event.substr(0, other.event.find('(')))) continue;
+      if (!symbols.contains(base::symbol_of(other.event))) continue;
       if (names.insert(other.event).second && can_be_called(other)) {
         events_.push_back(std::move(other));
       }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/syntax/formatter.h"
 #include "runtime/enumerate/path_admission.h"
 #include "runtime/session/solver_session.h"
@@ -68,7 +69,7 @@ class RunAdmission {
     const auto& step = run.steps[i];
     const auto t = static_cast<Timepoint>(i);
     const bool refused = step.failed && says_not_possible(step.reason) &&
-                         forbidden_.contains(step.event.substr(0, step.event.find('(')));
+                         forbidden_.contains(base::symbol_of(step.event));
     const auto happens = index_.find(AtomKind::kHappens, step.event, t);
     if (!happens && !refused) return false;
     if (happens) facts.push_back(refused ? ~*happens : *happens);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compiler/artifact/symbol_table.h"
+#include "compiler/base/ground_name.h"
 #include "compiler/plan/plan_walk.h"
 
 namespace parallax::tools {
@@ -79,7 +80,7 @@ void add_outcome_facts(const compiler::PlanGraph& graph, const compiler::PlanQue
         if (can_hold[i] == can_fail[i]) continue;  // either is possible, or the formula is wrong
         const auto& name = questions.fluents()[unseen[i]];
         state[*names.fluent(name)] = can_hold[i];
-        symbols.insert(name.substr(0, name.find('(')));
+        symbols.insert(base::symbol_of(name));
       }
     }
     if (step.succeeded && performed.result) registers[*performed.result] = step.object;

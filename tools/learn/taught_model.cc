@@ -8,6 +8,7 @@
 
 #include "compiler/base/codes/files.h"
 #include "compiler/base/contract.h"
+#include "compiler/base/ground_name.h"
 
 namespace parallax::tools {
 
@@ -57,7 +58,7 @@ void TaughtModel::add(Evidence run, std::int64_t round) {
   for (auto& id : run.ids) id = fmt::format("{}/{}", round, id);
   for (const auto& step : run.steps) {
     if (run.executed && step.failed && says_not_possible(step.reason)) {
-      attempted_.insert(step.event.substr(0, step.event.find('(')));
+      attempted_.insert(base::symbol_of(step.event));
     }
   }
   const auto same = std::find_if(seen_.begin(), seen_.end(), [&](const auto& other) {

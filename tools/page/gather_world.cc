@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <set>
 
+#include "compiler/base/ground_name.h"
 #include "harness/config/scenario.h"
 #include "tools/page/gather.h"
 
@@ -68,8 +69,6 @@ void add_sources(const base::SourceFiles& files, PageData& page) {
 }
 
 /// "Go" of "Go(r2)".
-std::string symbol_of(const std::string& event) { return event.substr(0, event.find('(')); }
-
 bool speaks_of(const std::string& text, const std::string& symbol) {
   for (auto at = text.find(symbol + '('); at != std::string::npos;
        at = text.find(symbol + '(', at + 1)) {
@@ -83,10 +82,10 @@ bool speaks_of(const std::string& text, const std::string& symbol) {
 void add_axioms(const compiler::CompiledModel& model, PageData& page) {
   std::set<std::string> symbols;
   for (const auto& trace : page.traces) {
-    for (const auto& step : trace.steps) symbols.insert(symbol_of(step.event));
+    for (const auto& step : trace.steps) symbols.insert(base::symbol_of(step.event));
   }
   for (const auto& timeline : page.timelines) {
-    for (const auto& step : timeline.steps) symbols.insert(symbol_of(step.event));
+    for (const auto& step : timeline.steps) symbols.insert(base::symbol_of(step.event));
   }
   for (const auto& symbol : symbols) {
     std::vector<PagePlace> places;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "compiler/base/ground_name.h"
 #include "tools/page/markup.h"
 #include "tools/page/sections.h"
 
@@ -78,7 +79,7 @@ std::string SourceLinks::excerpt(const std::string& place, std::size_t around) c
 
 const std::vector<PagePlace>& SourceLinks::axioms_of(const std::string& event) const {
   static const std::vector<PagePlace> kNone;
-  const auto found = axioms_.find(event.substr(0, event.find('(')));
+  const auto found = axioms_.find(base::symbol_of(event));
   return found == axioms_.end() ? kNone : found->second;
 }
 

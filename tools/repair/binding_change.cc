@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "compiler/base/file_io.h"
+#include "compiler/base/ground_name.h"
 #include "compiler/plan/plan_binding.h"
 #include "compiler/repair/edit_grammar.h"
 
@@ -22,7 +23,7 @@ std::optional<BoundFailure> bound_failure(const RepairInput& input, const Eviden
   const auto file = files.add(name, before);
   const auto binding = compiler::parse_plan_binding(files, file, unread);
   if (!binding) return std::nullopt;
-  const auto symbol = compiler::symbol_of(step.event);
+  const auto symbol = base::symbol_of(step.event);
   const auto entry =
       std::find_if(binding->entries.begin(), binding->entries.end(),
                    [&](const auto& each) { return !each.plan && each.event_symbol == symbol; });

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/repair/guarded_model.h"
 #include "runtime/enumerate/path_admission.h"
 
@@ -237,7 +238,7 @@ void EditSearch::add_refusal(const Evidence& evidence, std::size_t t, Literal ha
   std::vector<Literal> reasons = {~active, happens};
   for (std::size_t i = 0; i < edits_.size(); ++i) {
     const auto& edit = edits_[i];
-    if (edit.kind != Edit::Kind::kRequire || edit.event != compiler::symbol_of(event)) continue;
+    if (edit.kind != Edit::Kind::kRequire || edit.event != base::symbol_of(event)) continue;
     if (edit.variables.size() != arguments.size()) continue;
     std::map<std::string, std::string> values;
     for (std::size_t a = 0; a < arguments.size(); ++a) values[edit.variables[a]] = arguments[a];

@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/repair/edit_text.h"
 #include "compiler/repair/guarded_model.h"
 #include "tools/repair/binding_change.h"
@@ -103,7 +104,7 @@ class ModelSearch {
       out.steps.push_back(std::move(step));
       if (!wide) continue;
       for (std::size_t t = 0; t < parting.after; ++t) {
-        out.more_events.insert(compiler::symbol_of(seen.steps[t].event));
+        out.more_events.insert(base::symbol_of(seen.steps[t].event));
       }
     }
     for (const auto& seen : evidence_) add_changed(seen, out);
@@ -127,8 +128,7 @@ class ModelSearch {
       for (const auto& [fluent, holds] : seen.states[t + 1]) {
         const auto before = seen.states[t].find(fluent);
         if (before == seen.states[t].end() || before->second == holds) continue;
-        scope.changed[compiler::symbol_of(seen.steps[t].event)].emplace(compiler::symbol_of(fluent),
-                                                                        holds);
+        scope.changed[base::symbol_of(seen.steps[t].event)].emplace(base::symbol_of(fluent), holds);
       }
     }
   }
@@ -327,7 +327,7 @@ class ModelSearch {
     std::set<std::string> told;
     for (const auto& parting : input_.partings) {
       const auto& step = parting.step;
-      if (!step.failed || compiler::symbol_of(step.event) != event) continue;
+      if (!step.failed || base::symbol_of(step.event) != event) continue;
       if (!told.insert(step.reason).second) continue;
       auto bound = bound_failure(input_, step);
       if (!bound) continue;

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "compiler/base/diagnostic_printer.h"
+#include "compiler/base/ground_name.h"
 #include "compiler/repair/edit_grammar.h"
 
 namespace parallax::tools {
@@ -66,7 +67,7 @@ std::vector<LocationId> PlanModel::locations(const Evidence& evidence, std::size
   auto wanted = *facts;
   // Requires that the plan has come to a perform of this event.
   std::vector<Literal> here;
-  const auto symbol = compiler::symbol_of(evidence.steps[t].event);
+  const auto symbol = base::symbol_of(evidence.steps[t].event);
   const auto guard = session_.new_variable();
   here.push_back(~guard);
   for (std::uint32_t i = 0; i < graph.locations.size(); ++i) {
@@ -89,7 +90,7 @@ std::vector<LocationId> PlanModel::locations(const Evidence& evidence, std::size
 void PlanModel::set_bad(const BadStep& bad) {
   clean_ = session_.new_variable();
   bad_.assign(static_cast<std::size_t>(horizon()), {});
-  const auto symbol = compiler::symbol_of(bad.step.event);
+  const auto symbol = base::symbol_of(bad.step.event);
   for (Timepoint t = 0; t < horizon(); ++t) {
     const auto happens = index_.find(AtomKind::kHappens, bad.step.event, t);
     if (!happens) continue;

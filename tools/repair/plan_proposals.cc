@@ -7,6 +7,7 @@
 #include <set>
 #include <tuple>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/repair/edit_grammar.h"
 #include "tools/repair/plan_candidates.h"
 #include "tools/repair/plan_search.h"
@@ -108,9 +109,9 @@ class PlanRepair {
       }
     }
     for (const auto& [fluent, holds] : step_.task.bad.where)
-      fluents.insert(compiler::symbol_of(fluent));
+      fluents.insert(base::symbol_of(fluent));
     std::vector<Tried> tried;
-    const auto event = compiler::symbol_of(step_.task.bad.step.event);
+    const auto event = base::symbol_of(step_.task.bad.step.event);
     // Nothing tells what an event needs that never went well.
     for (const bool wide : {false, true}) {
       if (!step_.went_well) break;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "compiler/base/file_io.h"
+#include "compiler/base/ground_name.h"
 #include "compiler/repair/edit_grammar.h"
 #include "tools/repair/patch.h"
 
@@ -168,7 +169,7 @@ bool has_constraints(const harness::Scenario& scenario) {
 
 bool is_defined(const RepairInput& input, const std::string& fluent) {
   const auto& typed = *input.domain->typed;
-  const auto symbol = typed.find_symbol(compiler::symbol_of(fluent));
+  const auto symbol = typed.find_symbol(base::symbol_of(fluent));
   return symbol && typed.symbols[*symbol].noninertial;
 }
 

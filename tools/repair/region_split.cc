@@ -22,6 +22,7 @@
 #include <limits>
 #include <map>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/base/words.h"
 #include "compiler/repair/condition_literal.h"
 #include "compiler/repair/edit_grammar.h"
@@ -422,8 +423,8 @@ class SplitSearch {
     if (!effects.not_there.empty()) what.push_back("does not: " + quoted(effects.not_there));
     if (!effects.added.empty()) what.push_back("does: " + quoted(effects.added));
     if (!effects.open.empty()) what.push_back("leaves open: " + quoted(effects.open));
-    return fmt::format("{}; with {}, `{}` {}", borders, part,
-                       compiler::symbol_of(parting.step.event), fmt::join(what, "; and "));
+    return fmt::format("{}; with {}, `{}` {}", borders, part, base::symbol_of(parting.step.event),
+                       fmt::join(what, "; and "));
   }
 
   static std::vector<std::string> sentences(const Cause& cause, const Held& held) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/repair/edit_grammar.h"
 #include "harness/discrete/stepped_model.h"
 #include "tools/repair/experiment.h"
@@ -41,7 +42,7 @@ bool chance_decides(const RepairInput& input) {
   const auto& typed = *input.domain->typed;
   for (std::size_t i = 0; i < world.release_slots.size(); ++i) {
     if (!world.release_slots[i]) continue;
-    const auto symbol = typed.find_symbol(compiler::symbol_of(world.fluents[i].name));
+    const auto symbol = typed.find_symbol(base::symbol_of(world.fluents[i].name));
     if (!symbol || !typed.symbols[*symbol].noninertial) return true;
   }
   return false;

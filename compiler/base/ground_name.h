@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace parallax::base {
+
+/// The symbol of a ground atom: "Go" for "Go(r2)". A name without arguments is its own symbol.
+inline std::string symbol_of(std::string_view atom) {
+  return std::string(atom.substr(0, atom.find('(')));
+}
+
+}  // namespace parallax::base
