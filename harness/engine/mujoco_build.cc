@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "harness/engine/mujoco_engine.h"
+#include "harness/engine/mujoco_errors.h"
 
 // The world is handed over as text in the engine's own language, the only way in that its library
 // has; the text never is a file.
@@ -12,7 +13,8 @@
 namespace parallax::harness {
 namespace {
 
-/// Reads a text; the reader of the library keeps a copy of its own and is not made for threads.
+/// Reads a text; the reader of the library keeps a copy of its own and is not made for threads. It
+/// catches errors of the engine itself.
 mjModel* read_model(const std::string& text) {
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
@@ -118,7 +120,7 @@ void find_hulls(MujocoWorld::Engine& engine, WorldText& world) {
 void build_engine(MujocoWorld::Engine& engine, const EngineInput& input) {
   WorldText world = write_mjcf(input);
   engine.model.reset(read_model(world.text));
-  engine.data.reset(mj_makeData(engine.model.get()));
+  ask_engine([&] { engine.data.reset(mj_makeData(engine.model.get())); });
   if (engine.data == nullptr) throw EngineFault("MuJoCo has no memory for the world");
   find_joints(engine);
   preload(engine);

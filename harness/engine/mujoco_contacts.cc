@@ -25,6 +25,7 @@
 #include "compiler/base/contract.h"
 #include "harness/engine/hull_contacts.h"
 #include "harness/engine/mujoco_engine.h"
+#include "harness/engine/mujoco_errors.h"
 
 namespace parallax::harness {
 namespace {
@@ -115,7 +116,8 @@ std::optional<double> depth_of(const Engine& engine, int a, int b) {
   if (collide == nullptr) return std::nullopt;
   std::array<mjContact, mjMAXCONPAIR> contacts;
   const AskedWorld asked(engine);
-  const int count = collide(&model, engine.data.get(), contacts.data(), a, b, 0.0);
+  int count = 0;
+  ask_engine([&] { count = collide(&model, engine.data.get(), contacts.data(), a, b, 0.0); });
   std::optional<double> deepest;
   for (int i = 0; i < count; ++i) {
     const double depth = -contacts[static_cast<std::size_t>(i)].dist;
@@ -201,6 +203,7 @@ mjfCollision by_the_engine = nullptr;  // what it has for all that is convex
 /// corners of their common part.
 int collide_hulls(const mjModel* model, const mjData* data, mjContact* out, int a, int b,
                   mjtNum margin) {
+  // First, so that nothing is held here where the engine fails (ask_engine).
   const int count = by_the_engine(model, data, out, a, b, margin);
   if (count == 0 || t_engine == nullptr) return count;
   const mjContact* const deepest = std::min_element(
@@ -225,7 +228,7 @@ void find_contacts(Engine& engine) {
   constexpr double kLeastFriction = 1e-5;  // of the engine
   mjData& data = *engine.data;
   const AskedWorld asked(engine);
-  mj_collision(engine.model.get(), &data);
+  ask_engine([&] { mj_collision(engine.model.get(), &data); });
   const double erp = engine.solver.contact_erp.value_or(engine.solver.erp);
   int kept = 0;
   for (int i = 0; i < data.ncon; ++i) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "harness/engine/mujoco_engine.h"
+#include "harness/engine/mujoco_errors.h"
 
 // MuJoCo finds the forces of a step as the minimum of a convex function. This treats friction as a
 // law of the same kind as pressure: a sliding contact comes apart, by friction times the speed of
@@ -50,7 +51,7 @@ bool anything_slides(const mjData& data) {
 void solve_friction(MujocoWorld::Engine& engine) {
   const mjModel* const model = engine.model.get();
   mjData& data = *engine.data;
-  mj_fwdConstraint(model, &data);
+  ask_engine([&] { mj_fwdConstraint(model, &data); });
   if (!anything_slides(data)) return;
   std::vector<double>& asked = engine.asked_m_s2;
   std::vector<double>& lost = engine.lost_m_s2;
@@ -58,7 +59,7 @@ void solve_friction(MujocoWorld::Engine& engine) {
   lost.resize(asked.size());
   for (int round = 0; round < kMostRounds; ++round) {
     const double share = round < kWholeRounds ? 1.0 : 0.5;
-    mj_mulJacVec(model, &data, lost.data(), data.qacc);
+    ask_engine([&] { mj_mulJacVec(model, &data, lost.data(), data.qacc); });
     bool changed = false;
     for (int i = 0; i < data.ncon; ++i) {
       const mjContact& contact = data.contact[i];
@@ -72,7 +73,7 @@ void solve_friction(MujocoWorld::Engine& engine) {
       changed = changed || std::abs(change) > kSameRate_m_s2 + kSameShareOfRate * apart;
     }
     if (!changed) return;
-    mj_fwdConstraint(model, &data);
+    ask_engine([&] { mj_fwdConstraint(model, &data); });
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "compiler/base/contract.h"
 #include "harness/engine/mujoco_engine.h"
+#include "harness/engine/mujoco_errors.h"
 #include "harness/world/angles.h"
 
 namespace parallax::harness {
@@ -20,13 +21,10 @@ using Engine = MujocoWorld::Engine;
 /// By itself the engine would write to a file in the current folder.
 void count_warning(const char* /*text*/) { MessageCounter::add_one(); }
 
-/// By itself the engine would end the process.
-void throw_fault(const char* text) { throw EngineFault(text); }
-
 void set_hooks() {
   static std::once_flag once;
   std::call_once(once, [] {
-    mju_user_error = &throw_fault;
+    mju_user_error = &leave_engine;  // by itself the engine would end the process
     mju_user_warning = &count_warning;
     replace_collisions();
   });
@@ -110,7 +108,7 @@ void set_masses(Engine& engine, std::span<const Placement> placements) {
     engine.masses_kg[i] = mass_kg;
     changed = true;
   }
-  if (changed) mj_setConst(&model, engine.data.get());
+  if (changed) ask_engine([&] { mj_setConst(&model, engine.data.get()); });
 }
 
 /// Bodies that do not fall are carried by a force at their centre.
@@ -124,8 +122,10 @@ void carry_weightless(Engine& engine) {
 
 /// Where everything is, from the joints.
 void update_places(Engine& engine) {
-  mj_kinematics(engine.model.get(), engine.data.get());
-  mj_comPos(engine.model.get(), engine.data.get());
+  ask_engine([&] {
+    mj_kinematics(engine.model.get(), engine.data.get());
+    mj_comPos(engine.model.get(), engine.data.get());
+  });
 }
 
 /// A motor is the engine's dry friction against a rail that moves: what it takes is bounded, and it
@@ -149,17 +149,19 @@ void step_once(Engine& engine) {
   note_touches(engine);
   engine.statistics.contacts += data->ncon;
   timer.add_lap_to(engine.statistics.collide_s);
-  mj_crb(model, data);
-  mj_factorM(model, data);
-  mj_makeConstraint(model, data);
-  mj_transmission(model, data);
-  mj_projectConstraint(model, data);
-  mj_fwdVelocity(model, data);
-  aim_motors(engine);
-  mj_fwdActuation(model, data);
-  mj_fwdAcceleration(model, data);
+  ask_engine([&] {
+    mj_crb(model, data);
+    mj_factorM(model, data);
+    mj_makeConstraint(model, data);
+    mj_transmission(model, data);
+    mj_projectConstraint(model, data);
+    mj_fwdVelocity(model, data);
+    aim_motors(engine);
+    mj_fwdActuation(model, data);
+    mj_fwdAcceleration(model, data);
+  });
   solve_friction(engine);
-  mj_Euler(model, data);
+  ask_engine([&] { mj_Euler(model, data); });
   update_places(engine);
   timer.add_lap_to(engine.statistics.solve_s);
 }
