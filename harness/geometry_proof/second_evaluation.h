@@ -7,6 +7,10 @@
 
 namespace parallax::harness {
 
+// Why twice: a certificate claims its verdict for every start of a box, and `--simulate` sees only
+// the starts that it draws. Two programs without common code decide each box, when it is proved
+// and when the certificate is checked.
+
 /// Decides a test of a controller once more, by other means and without sharing code with the
 /// check: shapes are corners, not half widths; places come from the code that starts simulations;
 /// what is apart is shown by one fixed direction for a box, what meets by one point that both
