@@ -86,6 +86,16 @@ void check_round_trip(const CampaignResult& result) {
   CHECK(report->execution == to_string(result.execution));
   CHECK(report->comparison == to_string(result.comparison));
   CHECK(report->simulator_name == result.simulator.name);
+  CHECK(report->simulator_version == result.simulator.version);
+  REQUIRE(report->criterion_spec);
+  CHECK(report->criterion_spec->kind == result.criterion.kind);
+  CHECK(report->criterion_spec->confidence_level == result.criterion.confidence_level);
+  CHECK(report->criterion_spec->epsilon == result.criterion.epsilon);
+  CHECK(report->criterion_spec->paper.preset == result.criterion.paper.preset);
+  CHECK(report->family.has_value() == result.spending.has_value());
+  if (report->family) CHECK(report->family->claim == result.claim);
+  CHECK(report->coverage.size() == result.coverage.size());
+  CHECK(report->opinion.has_value() == (result.second_opinion != nullptr));
   CHECK(report->interrupted == result.interrupted);
   REQUIRE(report->traces);
   REQUIRE(report->traces->size() == result.traces.size());
@@ -99,15 +109,29 @@ void check_round_trip(const CampaignResult& result) {
     CHECK(read.clean == judged.clean);
     CHECK(read.confidence == judged.certified_level);
     CHECK(read.epsilon == judged.certified_epsilon);
+    CHECK(read.claim == judged.claim);
+    CHECK(read.caveats == judged.caveats);
+    CHECK(read.not_covered == judged.not_covered);
+    CHECK(read.lost == judged.lost);
+    CHECK(read.error_share == judged.error_share);
+    CHECK(read.paper_stopped_at == judged.paper_stopped_at);
+    CHECK(read.paper_variant == judged.paper_variant);
     CHECK(read.number == trace.number);
     CHECK(read.verdict == to_string(result.traces[i].verdict));
     REQUIRE(read.events.size() == trace.event_count());
-    for (std::size_t t = 0; t < read.events.size(); ++t) CHECK(read.events[t] == trace.event(t));
+    REQUIRE(read.sources.size() == trace.event_count());
+    for (std::size_t t = 0; t < read.events.size(); ++t) {
+      CHECK(read.events[t] == trace.event(t));
+      CHECK(read.sources[t] == trace.plan[t].source);
+    }
   }
   REQUIRE(report->discrepancies);
   REQUIRE(report->discrepancies->size() == result.discrepancies.size());
   for (std::size_t i = 0; i < result.discrepancies.size(); ++i) {
     check_discrepancy(report->discrepancies->at(i), result.discrepancies[i]);
+    const auto standing = standing_of(result, result.discrepancies[i]);
+    CHECK(report->discrepancies->at(i).standing.is == standing.is);
+    CHECK(report->discrepancies->at(i).standing.words == standing.words);
   }
 }
 
