@@ -17,6 +17,7 @@ namespace parallax::harness {
 namespace {
 
 using runtime::Literal;
+using runtime::WindowEnd;
 
 constexpr std::int64_t kNoEvent = -1;
 constexpr double kTimepoint_s = 1.0;
@@ -53,7 +54,8 @@ ModelSimulator::ModelSimulator(std::shared_ptr<const SteppedModel> world,
       limits_(limits),
       fluents_(numbers_of(world_->model.fluents)),
       events_(numbers_of(world_->model.events)),
-      start_(world_->layered, world_->layered.start, true, stop),
+      before_(world_->layered.state_before()),
+      start_(world_->layered.start, before_, stop),
       whole_(world_->model, runtime::make_cadical_solver(stop)) {
   std::int64_t place = 0;
   for (const auto& event : world_->model.events) {
@@ -62,8 +64,12 @@ ModelSimulator::ModelSimulator(std::shared_ptr<const SteppedModel> world,
   for (const auto slot : world_->layered.hidden) {
     is_release_.push_back(world_->model.slots[slot].kind == compiler::AtomKind::kReleasedAt);
   }
+  for (const auto slot : world_->layered.events) {
+    event_literals_.push_back(world_->layered.after(slot));
+  }
   for (const auto& step : world_->layered.steps) {
-    windows_.push_back(std::make_unique<WindowSolver>(world_->layered, step, false, stop));
+    next_states_.emplace_back(step, world_->layered.state_after(), stop);
+    next_events_.emplace_back(step, event_literals_, stop);
   }
 }
 
@@ -81,7 +87,7 @@ SimulatorInfo ModelSimulator::info_of(const SteppedModel& world) {
 }
 
 Outcome ModelSimulator::no_list(const Answer& answer, const std::string& what) const {
-  if (answer.end == ListEnd::kStopped) return {SimStatus::kLost, "stopped", 0.0, {}};
+  if (answer.end == WindowEnd::kStopped) return {SimStatus::kLost, "stopped", 0.0, {}};
   return {SimStatus::kUnsupported,
           fmt::format("found more than {} {} in `{}`; say more of what is open", answer.limit, what,
                       world_->name),
@@ -120,7 +126,7 @@ Outcome ModelSimulator::reset(const State& initial, std::uint64_t seed) {
     said.push_back((*wanted ? "" : "!") + name);
     const auto& slot = world_->model.fluents[found->second].slot;
     if (slot) {
-      const auto literal = start_.after(*slot);
+      const auto literal = world_->layered.before(*slot);
       given.push_back(*wanted ? literal : ~literal);
     } else {
       possible = possible && !*wanted;  // it never holds
@@ -129,10 +135,11 @@ Outcome ModelSimulator::reset(const State& initial, std::uint64_t seed) {
   seed_ = seed;
   draws_ = 0;
   digest_ = base::kFnvStart;
-  std::vector<runtime::Move> moves;
-  const auto end = possible ? start_.states(given, limits_.states, moves) : ListEnd::kComplete;
-  const auto starts = grouped(std::move(moves), end, 0);
-  if (starts.end != ListEnd::kComplete) return no_list(starts, "initial states that fit a start");
+  const auto found =
+      possible ? start_.ask(given, {limits_.states}) : runtime::WindowSolver::Answer();
+  const auto starts =
+      found.is_complete() ? grouped(found.found, 0) : Answer{found.end, {}, limits_.states};
+  if (starts.end != WindowEnd::kComplete) return no_list(starts, "initial states that fit a start");
   if (starts.states.empty()) {
     return {SimStatus::kInvalidStart,
             fmt::format("`{}` has no execution that starts with {}", world_->name,
@@ -145,95 +152,79 @@ Outcome ModelSimulator::reset(const State& initial, std::uint64_t seed) {
   return {};
 }
 
-runtime::SolveStatus ModelSimulator::goes_on(const runtime::Bits& observed,
-                                             const runtime::Bits& hidden, compiler::Timepoint t) {
+runtime::SolveStatus ModelSimulator::goes_on(const runtime::Bits& state, compiler::Timepoint t) {
   const auto& model = world_->model;
+  std::vector<Literal> at;
+  for (const auto literal : before_) {
+    at.push_back(
+        Literal::positive(model.variable(static_cast<std::uint32_t>(literal.var()) - 1, t)));
+  }
   std::vector<Literal> given;
-  const auto assume = [&](const std::vector<std::uint32_t>& slots, const runtime::Bits& values) {
-    for (std::size_t i = 0; i < slots.size(); ++i) {
-      const auto literal = Literal::positive(model.variable(slots[i], t));
-      given.push_back(values[i] ? literal : ~literal);
-    }
-  };
-  assume(world_->layered.observed, observed);
-  assume(world_->layered.hidden, hidden);
+  runtime::assume(at, state, given);
   return whole_.solve(model.horizon, given);
 }
 
 /// Valuations of one state become one, so that each state counts once where one is drawn.
-ModelSimulator::Answer ModelSimulator::grouped(std::vector<runtime::Move> moves, ListEnd end,
+ModelSimulator::Answer ModelSimulator::grouped(const std::vector<runtime::Bits>& valuations,
                                                compiler::Timepoint t) {
-  Answer answer{end, {}, limits_.states};
-  if (end != ListEnd::kComplete) return answer;
-  std::sort(moves.begin(), moves.end());
-  moves.erase(std::unique(moves.begin(), moves.end()), moves.end());
   std::map<std::pair<runtime::Bits, runtime::Bits>, std::vector<runtime::Bits>> states;
-  for (auto& move : moves) {
+  for (const auto& valuation : valuations) {
     // Each window by itself does not see that the axioms of the next ones leave nothing.
-    const auto status = t < world_->model.horizon ? goes_on(move.observed, move.hidden, t)
-                                                  : runtime::SolveStatus::kSatisfiable;
+    const auto status =
+        t < world_->model.horizon ? goes_on(valuation, t) : runtime::SolveStatus::kSatisfiable;
     if (status == runtime::SolveStatus::kUnsatisfiable) continue;
-    if (status == runtime::SolveStatus::kUnknown) return {ListEnd::kStopped, {}, 0};
+    if (status == runtime::SolveStatus::kUnknown) return {WindowEnd::kStopped, {}, 0};
+    auto move = runtime::move_of(world_->layered, valuation);
     runtime::Bits released;
     for (std::size_t i = 0; i < move.hidden.size(); ++i) {
       if (is_release_[i]) released.push_back(move.hidden[i]);
     }
     states[{std::move(move.observed), std::move(released)}].push_back(std::move(move.hidden));
   }
+  Answer answer{WindowEnd::kComplete, {}, limits_.states};
   for (auto& [shown, hidden] : states) {
     answer.states.push_back({shown.first, shown.second, std::move(hidden)});
   }
-  if (answer.states.size() > limits_.states) answer.end = ListEnd::kTooMany;
+  if (answer.states.size() > limits_.states) answer.end = WindowEnd::kTooMany;
   return answer;
 }
 
-std::vector<Literal> ModelSimulator::before(const WindowSolver& solver,
-                                            const runtime::Bits& hidden) const {
+std::vector<Literal> ModelSimulator::before(const runtime::Bits& hidden) const {
   std::vector<Literal> out;
-  const auto assume = [&](const std::vector<std::uint32_t>& slots, const runtime::Bits& values) {
-    for (std::size_t i = 0; i < slots.size(); ++i) {
-      out.push_back(values[i] ? solver.before(slots[i]) : ~solver.before(slots[i]));
-    }
-  };
-  assume(world_->layered.observed, state_.observed);
-  assume(world_->layered.hidden, hidden);
+  runtime::assume(before_, state_.observed, out);
+  runtime::assume(std::span(before_).subspan(state_.observed.size()), hidden, out);
   return out;
 }
 
 ModelSimulator::Answer ModelSimulator::find_steps(std::size_t step, std::int64_t event) {
   const auto& at = world_->layered.step_at;
-  auto& solver = *windows_[at[std::min(step, at.size() - 1)]];
-  const auto count = world_->layered.events.size();
+  const auto window = at[std::min(step, at.size() - 1)];
   // Which events go with it: no more than the model demands.
-  std::set<std::vector<std::size_t>> sets;
+  std::set<runtime::Bits> sets;
   for (const auto& hidden : state_.hidden) {
-    auto given = before(solver, hidden);
-    if (event != kNoEvent) given.push_back(solver.event(static_cast<std::size_t>(event)));
-    std::vector<std::vector<std::size_t>> least;
-    const auto end = solver.least_events(given, limits_.event_sets, least);
-    if (end != ListEnd::kComplete) return {end, {}, limits_.event_sets};
-    sets.insert(least.begin(), least.end());
+    auto given = before(hidden);
+    if (event != kNoEvent) given.push_back(event_literals_[static_cast<std::size_t>(event)]);
+    const auto least = next_events_[window].least(given, limits_.event_sets);
+    if (!least.is_complete()) return {least.end, {}, limits_.event_sets};
+    sets.insert(least.found.begin(), least.found.end());
   }
-  std::vector<runtime::Move> moves;
+  std::set<runtime::Bits> valuations;
   for (const auto& set : sets) {
     const bool is_least = std::none_of(sets.begin(), sets.end(), [&](const auto& other) {
-      return other != set && std::includes(set.begin(), set.end(), other.begin(), other.end());
+      return other != set && std::equal(other.begin(), other.end(), set.begin(),
+                                        [](bool in_other, bool in) { return in || !in_other; });
     });
     if (!is_least) continue;
     for (const auto& hidden : state_.hidden) {
-      auto given = before(solver, hidden);
-      for (std::size_t i = 0; i < count; ++i) {
-        const bool happens = std::binary_search(set.begin(), set.end(), i);
-        given.push_back(happens ? solver.event(i) : ~solver.event(i));
-      }
-      std::vector<runtime::Move> more;
-      const auto end = solver.states(given, limits_.states, more);
-      if (end != ListEnd::kComplete) return {end, {}, limits_.states};
-      moves.insert(moves.end(), std::make_move_iterator(more.begin()),
-                   std::make_move_iterator(more.end()));
+      auto given = before(hidden);
+      runtime::assume(event_literals_, set, given);
+      const auto next = next_states_[window].ask(given, {limits_.states});
+      if (!next.is_complete()) return {next.end, {}, limits_.states};
+      valuations.insert(next.found.begin(), next.found.end());
     }
   }
-  return grouped(std::move(moves), ListEnd::kComplete, static_cast<compiler::Timepoint>(step) + 1);
+  return grouped({valuations.begin(), valuations.end()},
+                 static_cast<compiler::Timepoint>(step) + 1);
 }
 
 const ModelSimulator::Answer& ModelSimulator::steps(std::int64_t event) {
@@ -276,7 +267,7 @@ Outcome ModelSimulator::act(std::string_view action, const State& /*arguments*/,
   const auto taken_s = kTimepoint_s;
   if (place != kNoEvent) {
     const auto& answer = steps(place);
-    if (answer.end != ListEnd::kComplete) {
+    if (answer.end != WindowEnd::kComplete) {
       return no_list(answer, fmt::format("outcomes of `{}`", action));
     }
     if (!answer.states.empty()) {
@@ -286,7 +277,7 @@ Outcome ModelSimulator::act(std::string_view action, const State& /*arguments*/,
     }
   }
   const auto& idle = steps(kNoEvent);
-  if (idle.end != ListEnd::kComplete) return no_list(idle, "outcomes of a step without an event");
+  if (idle.end != WindowEnd::kComplete) return no_list(idle, "outcomes of a step without an event");
   if (!idle.states.empty()) move_to(idle.states);
   ++timepoint_;
   return {SimStatus::kFailed,

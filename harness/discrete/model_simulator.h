@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "harness/discrete/stepped_model.h"
-#include "harness/discrete/window_solver.h"
 #include "harness/simulator/simulator.h"
+#include "runtime/graph/window_solver.h"
 #include "runtime/session/solver_session.h"
 
 namespace parallax::harness {
@@ -58,7 +58,7 @@ class ModelSimulator final : public Simulator {
  private:
   /// States that a question leaves open, or why there is no list.
   struct Answer {
-    ListEnd end = ListEnd::kComplete;
+    runtime::WindowEnd end = runtime::WindowEnd::kComplete;
     std::vector<WorldState> states;
     std::size_t limit = 0;  // the one that was hit
   };
@@ -66,13 +66,11 @@ class ModelSimulator final : public Simulator {
 
   const Answer& steps(std::int64_t event);
   Answer find_steps(std::size_t step, std::int64_t event);
-  /// The state before the window, in one of its valuations, as assumptions.
-  std::vector<runtime::Literal> before(const WindowSolver& solver,
-                                       const runtime::Bits& hidden) const;
-  /// The states at `t` that the moves lead to and that go on.
-  Answer grouped(std::vector<runtime::Move> moves, ListEnd end, compiler::Timepoint t);
-  runtime::SolveStatus goes_on(const runtime::Bits& observed, const runtime::Bits& hidden,
-                               compiler::Timepoint t);
+  /// The state before a window, in one of its valuations, as assumptions.
+  std::vector<runtime::Literal> before(const runtime::Bits& hidden) const;
+  /// The states at `t` with these valuations, ascending, that go on.
+  Answer grouped(const std::vector<runtime::Bits>& valuations, compiler::Timepoint t);
+  runtime::SolveStatus goes_on(const runtime::Bits& state, compiler::Timepoint t);
   void move_to(const std::vector<WorldState>& states);
   Outcome no_list(const Answer& answer, const std::string& what) const;
 
@@ -80,10 +78,13 @@ class ModelSimulator final : public Simulator {
   ModelWorldLimits limits_;
   std::map<std::string, std::uint32_t, std::less<>> fluents_;  // numbers in the model
   std::map<std::string, std::uint32_t, std::less<>> events_;
-  std::vector<bool> is_release_;            // by place in LayeredModel::hidden
-  std::vector<std::int64_t> event_places_;  // by number: among LayeredModel::events, or -1
-  WindowSolver start_;
-  std::vector<std::unique_ptr<WindowSolver>> windows_;  // as LayeredModel::steps
+  std::vector<bool> is_release_;                    // by place in LayeredModel::hidden
+  std::vector<std::int64_t> event_places_;          // by number: among LayeredModel::events, or -1
+  std::vector<runtime::Literal> before_;            // LayeredModel::state_before
+  std::vector<runtime::Literal> event_literals_;    // by place among LayeredModel::events
+  runtime::WindowSolver start_;                     // for the states
+  std::vector<runtime::WindowSolver> next_states_;  // as LayeredModel::steps
+  std::vector<runtime::WindowSolver> next_events_;  // likewise
   runtime::SolverSession whole_;
   std::map<Question, Answer> known_;
   std::size_t known_states_ = 0;

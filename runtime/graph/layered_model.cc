@@ -459,6 +459,19 @@ class Splitter {
 
 }  // namespace
 
+std::vector<Literal> LayeredModel::state_before() const {
+  std::vector<Literal> out;
+  for (const auto slot : observed) out.push_back(before(slot));
+  for (const auto slot : hidden) out.push_back(before(slot));
+  return out;
+}
+
+std::vector<Literal> LayeredModel::state_after() const {
+  auto out = state_before();
+  for (auto& literal : out) literal = after(static_cast<std::uint32_t>(literal.var()) - 1);
+  return out;
+}
+
 std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model,
                                                            Distinct distinct, FixedTies ties) {
   auto split = Splitter(model, distinct, unit_values(model), ties).run();

@@ -48,6 +48,16 @@ struct LayeredModel {
   /// There are clauses that no window has, over fixed variables alone. They distinguish no traces,
   /// but if they cannot hold, there is no trace.
   bool has_unplaced = false;
+
+  /// Literals of a window: for a slot of the state before it; for one of the state after it, or of
+  /// the step.
+  Literal before(std::uint32_t slot) const {
+    return Literal::positive(static_cast<std::int32_t>(slot) + 1);
+  }
+  Literal after(std::uint32_t slot) const { return before(state_slots + slot); }
+  /// Those for `observed`, then `hidden`.
+  std::vector<Literal> state_before() const;
+  std::vector<Literal> state_after() const;
 };
 
 /// Treatment of variables without a timepoint that tie far windows together.

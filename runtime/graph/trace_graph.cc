@@ -5,10 +5,9 @@
 // (layered_model.cc). A node is an observed state with all valuations of the hidden slots that
 // some trace with the same observations can have (subset construction, Rabin and Scott 1959), so
 // different paths are different traces. Each node is expanded once for each distinct window,
-// whenever it is reached. The ways on are listed by search (clause_search.cc); a window that
-// meets too many conflicts is given to a solver that learns and blocks. Every way on is checked
-// against the clauses of its window. From the last layer backwards each node gets the exact
-// number of its completions, whose sum over the starts is the number of traces.
+// whenever it is reached; its window lists the ways on (window_solver.cc). From the last layer
+// backwards each node gets the exact number of its completions, whose sum over the starts is the
+// number of traces.
 //
 // Cost: one enumeration for each node, window and hidden valuation; one addition of big numbers
 // for each edge of each layer. Nodes, edges and conflicts are limited.
@@ -25,29 +24,12 @@
 namespace parallax::runtime {
 namespace {
 
-/// A state that meets more conflicts than this is left to the solver, and so are those after it.
-constexpr std::int64_t kSearchConflicts = 2000;
-
-std::vector<Literal> projection(const LayeredModel& model, bool is_start) {
+/// Literals for the events of a step and the state after it.
+std::vector<Literal> events_and_state(const LayeredModel& model) {
   std::vector<Literal> out;
-  const auto slots = static_cast<std::int32_t>(model.state_slots);
-  const auto project = [&](const std::vector<std::uint32_t>& some, std::int32_t offset) {
-    for (const auto slot : some) {
-      out.push_back(Literal::positive(offset + static_cast<std::int32_t>(slot) + 1));
-    }
-  };
-  if (!is_start) project(model.events, slots);
-  project(model.observed, is_start ? 0 : slots);
-  project(model.hidden, is_start ? 0 : slots);
-  return out;
-}
-
-std::vector<std::vector<Literal>> literals(const WindowClauses& window) {
-  std::vector<std::vector<Literal>> out;
-  for (const auto& written : window.clauses) {
-    auto& clause = out.emplace_back();
-    for (const auto literal : written) clause.push_back(Literal::from_dimacs(literal));
-  }
+  for (const auto slot : model.events) out.push_back(model.after(slot));
+  const auto state = model.state_after();
+  out.insert(out.end(), state.begin(), state.end());
   return out;
 }
 
@@ -59,123 +41,16 @@ void sort_out(std::vector<std::uint32_t>& nodes) {
 
 }  // namespace
 
-StepSolver::StepSolver(const LayeredModel& model, const WindowClauses& window, bool is_start,
-                       const std::atomic<bool>* stop)
-    : model_(model),
-      window_(window),
-      is_start_(is_start),
-      stop_(stop),
-      projection_(projection(model, is_start)),
-      search_(window.variables, projection_),
-      next_guard_(window.variables + 1) {
-  for (const auto& clause : literals(window)) search_.add_clause(clause);
-}
-
-std::optional<std::vector<Move>> StepSolver::moves(const Bits& observed, const Bits& hidden,
-                                                   const MoveLimits& limits) {
-  std::vector<Literal> state;
-  const auto assume = [&](const std::vector<std::uint32_t>& slots, const Bits& values) {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto literal = Literal::positive(static_cast<std::int32_t>(slots[i]) + 1);
-      state.push_back(values[i] ? literal : ~literal);
-    }
-  };
-  assume(model_.observed, observed);
-  assume(model_.hidden, hidden);
-  std::vector<Move> found;
-  if (solver_ == nullptr) {
-    const auto status = search(state, limits, found);
-    if (status == ClauseSearch::Status::kNoMore) return found;
-    if (status == ClauseSearch::Status::kFound || is_spent(limits)) return std::nullopt;
-    if (!limits.solver) {
-      wants_solver_ = true;
-      return std::nullopt;
-    }
-    start_solver();
-  }
-  return solve(state, limits.moves);
-}
-
-/// kFound: it was stopped, or there are too many.
-ClauseSearch::Status StepSolver::search(const std::vector<Literal>& state, const MoveLimits& limits,
-                                        std::vector<Move>& found) {
-  const auto value = [&](Literal literal) { return search_.value(literal); };
-  const auto last = std::min(search_.conflicts() + kSearchConflicts, limits.conflicts);
-  search_.begin(state);
-  while (true) {
-    const auto status = search_.next(last - search_.conflicts());
-    if (status != ClauseSearch::Status::kFound || is_stopped() || found.size() == limits.moves) {
-      return status;
-    }
-    require_window(value);
-    found.push_back(read(value));
-  }
-}
-
-void StepSolver::start_solver() {
-  solver_ = make_cadical_solver(stop_);
-  for (const auto& clause : literals(window_)) solver_->add_clause(clause);
-  for (const auto literal : projection_) solver_->set_phase(~literal);
-}
-
-std::optional<std::vector<Move>> StepSolver::solve(const std::vector<Literal>& state,
-                                                   std::size_t limit) {
-  const auto guard = Literal::positive(next_guard_++);
-  const auto value = [&](Literal literal) { return solver_->value(literal); };
-  std::vector<Move> found;
-  std::vector<Literal> blocking;
-  while (true) {
-    solver_->assume(guard);
-    for (const auto literal : state) solver_->assume(literal);
-    const auto status = solver_->solve();
-    if (status == SolveStatus::kUnknown || found.size() == limit) return std::nullopt;
-    if (status == SolveStatus::kUnsatisfiable) break;
-    require_window(value);
-    found.push_back(read(value));
-    blocking = {~guard};
-    for (const auto literal : projection_) blocking.push_back(value(literal) ? ~literal : literal);
-    solver_->add_clause(blocking);
-  }
-  solver_->add_clause(std::vector{~guard});
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
-/// Every way is evaluated once on the clauses themselves.
-template <typename Value>
-void StepSolver::require_window(const Value& value) const {
-  for (const auto& clause : window_.clauses) {
-    PARALLAX_REQUIRE(
-        std::any_of(clause.begin(), clause.end(),
-                    [&](std::int32_t literal) { return value(Literal::from_dimacs(literal)); }),
-        "what a window admits satisfies every clause of it");
-  }
-}
-
-template <typename Value>
-Move StepSolver::read(const Value& value) const {
-  Move move;
-  std::size_t next = 0;
-  const auto take = [&](std::size_t count, Bits& bits) {
-    bits.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) bits.push_back(value(projection_[next++]));
-  };
-  if (!is_start_) take(model_.events.size(), move.events);
-  take(model_.observed.size(), move.observed);
-  take(model_.hidden.size(), move.hidden);
-  return move;
-}
-
 TraceGraph::TraceGraph(const LayeredModel& model, const GraphLimits& limits,
                        const std::atomic<bool>* stop, const GraphOrbits* orbits)
     : model_(model),
       limits_(limits),
       stop_(stop),
       orbits_(orbits),
-      start_(model, model.start, true, stop) {
-  for (const auto& step : model.steps) {
-    steps_.push_back(std::make_unique<StepSolver>(model, step, false, stop));
-  }
+      before_(model.state_before()),
+      start_(model.start, before_, stop) {
+  const auto projection = events_and_state(model);
+  for (const auto& step : model.steps) steps_.emplace_back(step, projection, stop);
   edges_.resize(model.steps.size());
 }
 
@@ -214,13 +89,25 @@ std::uint32_t TraceGraph::intern_events(Bits events) {
   return entry->second;
 }
 
+/// All ways on, in canonical order. None: stopped, or a limit was hit.
+std::optional<std::vector<Move>> TraceGraph::moves(WindowSolver& window,
+                                                   std::span<const Literal> state,
+                                                   std::size_t limit) {
+  const auto answer = window.ask(state, {limit, limits_.conflicts, limits_.solver});
+  needs_solver_ = needs_solver_ || answer.end == WindowEnd::kNeedsSolver;
+  if (!answer.is_complete()) return std::nullopt;
+  std::vector<Move> out;
+  out.reserve(answer.found.size());
+  for (const auto& values : answer.found) out.push_back(move_of(model_, values));
+  return out;
+}
+
 bool TraceGraph::expand(std::string& reason) {
-  const auto most = std::min(limits_.nodes, limits_.edges);
-  auto moves = start_.moves({}, {}, {most, limits_.conflicts, limits_.solver});
-  if (!moves) return give_up(reason);
+  auto starts_found = moves(start_, {}, std::min(limits_.nodes, limits_.edges));
+  if (!starts_found) return give_up(reason);
   const auto* orbits = orbits_ == nullptr ? nullptr : &orbits_->at_start;
   std::map<Bits, std::vector<Bits>> starts;
-  for (auto& move : *moves) starts[move.observed].push_back(std::move(move.hidden));
+  for (auto& move : *starts_found) starts[move.observed].push_back(std::move(move.hidden));
   for (auto& [observed, hidden] : starts) {
     std::sort(hidden.begin(), hidden.end());
     starts_.push_back(intern({observed, std::move(hidden)}, orbits));
@@ -247,11 +134,13 @@ bool TraceGraph::expand_node(std::uint32_t step, std::uint32_t node, std::string
   std::map<std::pair<Bits, Bits>, std::vector<Bits>> ways;  // by events and observed
   const auto& from = *nodes_[node];
   for (const auto& hidden : from.hidden) {
-    auto moves = steps_[step]->moves(
-        from.observed, hidden, {limits_.edges - move_count_, limits_.conflicts, limits_.solver});
-    if (!moves) return give_up(reason);
-    move_count_ += moves->size();
-    for (auto& move : *moves) {
+    std::vector<Literal> state;
+    assume(before_, from.observed, state);
+    assume(std::span(before_).subspan(from.observed.size()), hidden, state);
+    auto found = moves(steps_[step], state, limits_.edges - move_count_);
+    if (!found) return give_up(reason);
+    move_count_ += found->size();
+    for (auto& move : *found) {
       ways[{std::move(move.events), std::move(move.observed)}].push_back(std::move(move.hidden));
     }
   }
@@ -266,15 +155,9 @@ bool TraceGraph::expand_node(std::uint32_t step, std::uint32_t node, std::string
   return true;
 }
 
-bool TraceGraph::wants_solver() const {
-  return start_.wants_solver() || std::any_of(steps_.begin(), steps_.end(), [](const auto& step) {
-           return step->wants_solver();
-         });
-}
-
 bool TraceGraph::give_up(std::string& reason) const {
   reason = stop_ != nullptr && stop_->load() ? "it was stopped" : "the graph has too many states";
-  if (wants_solver()) reason = kWantsSolver;
+  if (needs_solver_) reason = kWantsSolver;
   return false;
 }
 
@@ -302,13 +185,13 @@ const std::vector<GraphEdge>& TraceGraph::edges(Timepoint t, std::uint32_t node)
 
 std::int64_t TraceGraph::work() const {
   auto work = start_.work();
-  for (const auto& step : steps_) work += step->work();
+  for (const auto& step : steps_) work += step.work();
   return work;
 }
 
 std::int64_t TraceGraph::solve_calls() const {
   auto calls = start_.solve_calls();
-  for (const auto& step : steps_) calls += step->solve_calls();
+  for (const auto& step : steps_) calls += step.solve_calls();
   return calls;
 }
 

@@ -8,76 +8,17 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <variant>
 #include <vector>
 
-#include "runtime/enumerate/clause_search.h"
 #include "runtime/graph/layered_model.h"
-#include "runtime/solver/sat_solver.h"
+#include "runtime/graph/window_solver.h"
 
 namespace parallax::runtime {
-
-/// Truth values, false before true: the order of vectors is the canonical order.
-using Bits = std::vector<bool>;
-
-/// One way through a window: the events, and the state after it.
-struct Move {
-  Bits events;    // by LayeredModel::events
-  Bits observed;  // by LayeredModel::observed
-  Bits hidden;    // by LayeredModel::hidden
-  friend auto operator<=>(const Move&, const Move&) = default;
-};
-
-struct MoveLimits {
-  std::size_t moves = 0;       // from one state
-  std::int64_t conflicts = 0;  // of the search, for all states together
-  bool solver = true;          // may answer where the search gives up
-};
-
-/// One window, which is asked for every way on from a state: by search, and from the first state on
-/// where that meets too many conflicts by a solver that learns. What is blocked in the solver
-/// during an enumeration is released after it.
-class StepSolver {
- public:
-  /// `model` outlives the solver. `window` is one of its windows; `is_start`: the first. `stop` may
-  /// be null.
-  StepSolver(const LayeredModel& model, const WindowClauses& window, bool is_start,
-             const std::atomic<bool>* stop);
-  /// All moves from the state, each once, in canonical order. None: it was stopped, or a limit was
-  /// hit. For the start both vectors are empty and so are the events of the moves.
-  std::optional<std::vector<Move>> moves(const Bits& observed, const Bits& hidden,
-                                         const MoveLimits& limits);
-  std::int64_t solve_calls() const { return solver_ == nullptr ? 0 : solver_->solve_calls(); }
-  /// Literals set by the search; a call of the solver counts as one whole valuation.
-  std::int64_t work() const { return search_.assignments() + solve_calls() * window_.variables; }
-  /// Some state was left because no solver was to answer.
-  bool wants_solver() const { return wants_solver_; }
-
- private:
-  template <typename Value>
-  Move read(const Value& value) const;
-  template <typename Value>
-  void require_window(const Value& value) const;
-  bool is_stopped() const { return stop_ != nullptr && stop_->load(); }
-  std::optional<std::vector<Move>> solve(const std::vector<Literal>& state, std::size_t limit);
-  ClauseSearch::Status search(const std::vector<Literal>& state, const MoveLimits& limits,
-                              std::vector<Move>& found);
-  bool is_spent(const MoveLimits& limits) const { return search_.conflicts() >= limits.conflicts; }
-  void start_solver();
-
-  const LayeredModel& model_;
-  const WindowClauses& window_;
-  bool is_start_;
-  const std::atomic<bool>* stop_;
-  std::vector<Literal> projection_;  // events, observed, hidden
-  ClauseSearch search_;
-  std::unique_ptr<SatSolver> solver_;  // once the search has given up
-  std::int32_t next_guard_;
-  bool wants_solver_ = false;
-};
 
 /// A state of the graph: the observed values, and every valuation of the hidden slots that some
 /// trace with the same observations so far can have (subset construction, Rabin and Scott 1959).
@@ -121,7 +62,7 @@ class TraceGraph {
   /// None if the solver was stopped or a limit was hit; `reason` says which. `model` outlives the
   /// graph, `stop` may be null. With `orbits` a state stands for all of its orbit: the graph counts
   /// as without, but its paths are no longer the traces. `work`, if given, receives the cost
-  /// (StepSolver::work), also where there is no graph.
+  /// (WindowSolver::work), also where there is no graph.
   static std::unique_ptr<TraceGraph> build(const LayeredModel& model, const GraphLimits& limits,
                                            const std::atomic<bool>* stop, std::string& reason,
                                            const GraphOrbits* orbits = nullptr,
@@ -148,7 +89,7 @@ class TraceGraph {
   std::size_t node_count() const { return nodes_.size(); }
   std::size_t edge_count() const { return edge_count_; }
   std::int64_t solve_calls() const;
-  /// The cost of building the graph, as StepSolver::work.
+  /// The cost of building the graph, as WindowSolver::work.
   std::int64_t work() const;
 
  private:
@@ -156,7 +97,8 @@ class TraceGraph {
              const GraphOrbits* orbits);
   bool expand(std::string& reason);
   bool expand_node(std::uint32_t step, std::uint32_t node, std::string& reason);
-  bool wants_solver() const;
+  std::optional<std::vector<Move>> moves(WindowSolver& window, std::span<const Literal> state,
+                                         std::size_t limit);
   bool give_up(std::string& reason) const;
   void count_back();
   std::uint32_t intern(GraphNode node, const StateOrbits* orbits);
@@ -167,9 +109,10 @@ class TraceGraph {
   const LayeredModel& model_;
   GraphLimits limits_;
   const std::atomic<bool>* stop_;
-  const GraphOrbits* orbits_;  // while it is built; null: every state for itself
-  StepSolver start_;
-  std::vector<std::unique_ptr<StepSolver>> steps_;
+  const GraphOrbits* orbits_;    // while it is built; null: every state for itself
+  std::vector<Literal> before_;  // LayeredModel::state_before
+  WindowSolver start_;
+  std::vector<WindowSolver> steps_;
   // For look-up only; the numbers follow the order in which nodes and events were met.
   std::unordered_map<GraphNode, std::uint32_t, GraphNodeHash> node_index_;
   std::vector<const GraphNode*> nodes_;
@@ -181,6 +124,7 @@ class TraceGraph {
   std::vector<std::uint32_t> starts_;
   std::size_t edge_count_ = 0;
   std::size_t move_count_ = 0;  // as edges, for each hidden valuation
+  bool needs_solver_ = false;   // and the limits allow none
   bool determined_ = true;
   mpz_class total_;
 };

@@ -25,16 +25,6 @@ namespace {
 
 using compiler::EventId;
 
-std::vector<Literal> state_literals(const LayeredModel& model, std::int32_t offset) {
-  std::vector<Literal> out;
-  for (const auto* slots : {&model.observed, &model.hidden}) {
-    for (const auto slot : *slots) {
-      out.push_back(Literal::positive(offset + static_cast<std::int32_t>(slot) + 1));
-    }
-  }
-  return out;
-}
-
 }  // namespace
 
 std::size_t Belief::WordsHash::operator()(const Words& words) const {
@@ -54,7 +44,9 @@ bool Belief::Filter::admits(const Words& state) const {
 }
 
 Belief::Belief(const StepWindows& windows, const BeliefOptions& options)
-    : windows_(windows), options_(options) {
+    : windows_(windows),
+      options_(options),
+      start_(windows.layered.start, windows.layered.state_before(), options.stop) {
   const auto& layered = windows.layered;
   const auto& model = windows.model;
   observed_count_ = layered.observed.size();
@@ -82,40 +74,31 @@ Belief::Belief(const StepWindows& windows, const BeliefOptions& options)
     auto& unseen = unseen_[event.index()];
     if (unseen == Unseen::kUnobserved) unseen = Unseen::kPerformed;
   }
-  demanded_.assign(model.events.size(), 0);
   for (const auto event : options.demanded) {
     PARALLAX_REQUIRE(unseen_[event.index()] == Unseen::kNever, "demanded, or unobserved");
     if (!model.events[event.index()].slot) continue;
     unseen_[event.index()] = Unseen::kDemanded;
-    demanded_[event.index()] = static_cast<std::uint32_t>(literals_.demanded.size());
-    const auto literal = event_literals({event});
-    literals_.demanded.push_back(literal.front());
   }
   known_ = filter_of(Observation(model.fluents.size(), 0));
 
-  start_ = std::make_unique<WindowQuery>(layered.start, std::vector<std::vector<Literal>>{}, 0,
-                                         state_literals(layered, 0), options.stop);
-  const auto slots = static_cast<std::int32_t>(layered.state_slots);
-  literals_.after = state_literals(layered, slots);
+  literals_.after = layered.state_after();
+  literals_.demanded = event_literals(options.demanded);
   literals_.unobserved = event_literals(options.unobserved);
   std::vector<EventId> alone;
   for (const auto event : options.unobserved) {
     if (unseen_[event.index()] == Unseen::kUnobserved) alone.push_back(event);
   }
   literals_.alone = event_literals(alone);
-  for (const auto slot : windows.outcomes) {
-    literals_.succeeded.push_back(Literal::positive(slots + static_cast<std::int32_t>(slot) + 1));
-  }
+  for (const auto slot : windows.outcomes) literals_.succeeded.push_back(layered.after(slot));
   labels_.resize(kToldFrom);
 }
 
 /// Literals of those events that can happen at all.
 std::vector<Literal> Belief::event_literals(const std::vector<EventId>& events) const {
-  const auto slots = static_cast<std::int32_t>(windows_.layered.state_slots);
   std::vector<Literal> out;
   for (const auto event : events) {
     const auto slot = windows_.model.events[event.index()].slot;
-    if (slot) out.push_back(Literal::positive(slots + static_cast<std::int32_t>(*slot) + 1));
+    if (slot) out.push_back(windows_.layered.after(*slot));
   }
   return out;
 }
@@ -154,11 +137,11 @@ std::optional<std::vector<Belief::StateId>> Belief::initial_states(const Filter&
   const auto& observed = windows_.layered.observed;
   for (std::size_t i = 0; i < observed.size(); ++i) {
     if (!bit(known.mask, i)) continue;
-    const auto literal = Literal::positive(static_cast<std::int32_t>(observed[i]) + 1);
+    const auto literal = windows_.layered.before(observed[i]);
     assumptions.push_back(bit(known.value, i) ? literal : ~literal);
   }
-  const auto answer = start_->ask(assumptions, options_.max_states);
-  if (!answer.complete) return std::nullopt;
+  const auto answer = start_.ask(assumptions, {options_.max_states});
+  if (!answer.is_complete()) return std::nullopt;
   std::vector<StateId> out;
   for (const auto& found : answer.found) {
     Words words(word_count_, 0);

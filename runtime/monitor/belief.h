@@ -156,10 +156,9 @@ class Belief {
   std::vector<std::optional<std::size_t>> cut_bit_;     // by cut of the plan
   std::vector<std::size_t> control_bits_;               // all of the plan's control
   enum class Unseen : std::uint8_t { kNever, kUnobserved, kPerformed, kDemanded };
-  std::vector<Unseen> unseen_;           // by event; kPerformed: unobserved, by the plan alone
-  std::vector<std::uint32_t> demanded_;  // by event: its index in literals_.demanded
+  std::vector<Unseen> unseen_;  // by event; kPerformed: unobserved, by the plan alone
   StepLiterals literals_;
-  std::unique_ptr<WindowQuery> start_;
+  WindowSolver start_;
   /// By window of the axioms, and of the plan; -1: of the axioms alone.
   std::map<std::pair<std::uint32_t, std::int64_t>, std::unique_ptr<StepQuery>> steps_;
 

@@ -59,7 +59,7 @@ void Belief::assume_state(const Words& state, std::vector<Literal>& assumptions)
   std::size_t place = 0;
   for (const auto* slots : {&layered.observed, &layered.hidden}) {
     for (const auto slot : *slots) {
-      const auto literal = Literal::positive(static_cast<std::int32_t>(slot) + 1);
+      const auto literal = layered.before(slot);
       assumptions.push_back(bit(state, place++) ? literal : ~literal);
     }
   }
@@ -77,7 +77,6 @@ void Belief::assume_plan_after(const Words* as_before, std::vector<Literal>& ass
 bool Belief::assume_events(const ToldStep& told, std::uint32_t label,
                            StepQuestion& question) const {
   const auto& events = windows_.model.events;
-  const auto slots = static_cast<std::int32_t>(windows_.layered.state_slots);
   std::size_t seen = 0;
   for (std::uint32_t e = 0; e < events.size(); ++e) {
     const bool happens = label >= kToldFrom &&
@@ -88,16 +87,15 @@ bool Belief::assume_events(const ToldStep& told, std::uint32_t label,
       continue;
     }
     if (!happens && unseen_[e] == Unseen::kDemanded) {
-      question.demanded.push_back(demanded_[e]);
+      question.is_least = true;
       continue;
     }
     if (!happens && unseen_[e] == Unseen::kUnobserved) continue;
     if (!happens && unseen_[e] == Unseen::kPerformed && label != kAlone) continue;
-    const auto literal = Literal::positive(slots + static_cast<std::int32_t>(*events[e].slot) + 1);
+    const auto literal = windows_.layered.after(*events[e].slot);
     question.given.push_back(happens ? literal : ~literal);
   }
   PARALLAX_REQUIRE(seen == told.events.size(), "events of the model, sorted, each once");
-  std::sort(question.demanded.begin(), question.demanded.end());
   return true;
 }
 
@@ -157,7 +155,7 @@ std::optional<std::vector<Belief::StateId>> Belief::ask_step(StateId state, std:
     }
   }
   const auto answer = step.ask(question, options_.max_states);
-  if (!answer.complete) {
+  if (!answer.is_complete()) {
     obstacle_ = fmt::format("more than {} states are possible", options_.max_states);
     return std::nullopt;
   }
