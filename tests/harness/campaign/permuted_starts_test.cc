@@ -17,7 +17,7 @@ namespace {
 /// The probabilities that the first 0, 1, ..., `most` runs are all clean, where runs go through the
 /// states in orders of which each is equally likely. `good`: of a clean run, by state.
 std::vector<double> clean_prefixes(const std::vector<double>& good, std::size_t most) {
-  // Of one order, by its beginnings.
+  // Sums over all orders, by the number of runs.
   std::vector<double> within(good.size() + 1, 0.0);
   std::vector<std::size_t> order(good.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
