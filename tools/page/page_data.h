@@ -75,7 +75,7 @@ struct PagePath {
   std::int64_t simulations = 0, example = 0;
 };
 
-/// What came of the runs from one initial state of a trace.
+/// The results of the runs from one initial state of a trace.
 struct PageState {
   std::int64_t number = 0;
   std::string holds;

@@ -58,7 +58,7 @@ std::string map_section(const PageData& page);
 std::string scatter_section(const PageData& page);
 /// Recorded motion, or how it is made; with what assets/replay.js reads.
 std::string motion_section(const PageData& page);
-/// What came of the runs from each initial state, where a trace has several.
+/// The runs from each initial state and their results, where a trace has several.
 std::string start_section(const PageData& page);
 std::string confidence_section(const PageData& page);
 std::string ledger_section(const PageData& page);
