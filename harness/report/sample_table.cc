@@ -50,7 +50,8 @@ std::string samples_csv(const std::vector<SampleRow>& rows) {
       for (const auto& [name, value] : row.margins[i]) margins.insert({i, name});
     }
   }
-  std::string out = std::string(kSamplesCsvMark) + "event,cause,reason,sim_time_s";
+  std::string out(kSamplesCsvMark);
+  out += "event,cause,reason,sim_time_s";
   const bool has_states =
       std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.start_state > 0; });
   if (has_states) out += ",start_state";
