@@ -85,7 +85,7 @@ std::optional<PlanTarget> Explorer::refer(PlanState& state, const StopPerform& s
     return std::nullopt;
   }
   // Nothing but this ends a plan that tries again and again at one timepoint.
-  if (++state.missed > static_cast<std::uint32_t>(options_.max_loop)) {
+  if (++state.missed > options_.limits.max_loop) {
     return terminal(TerminalKind::kBound, "perform", stop.form);
   }
   auto key = state_key(state, values_, true);

@@ -47,10 +47,7 @@ class Explorer {
         options_(options),
         values_(values),
         sink_(sink),
-        machine_(code, data,
-                 {static_cast<std::uint32_t>(std::max(options.max_call_depth, 1)), options.max_loop,
-                  options.max_steps, options.location_samples, options.stop},
-                 values, sink),
+        machine_(code, data, options.limits, options.stop, values, sink),
         resolver_(binding, locator, ModelNames(options.constants), ModelNames(options.fluents),
                   code.classes, graph_, values, sink),
         rules_(

@@ -52,8 +52,9 @@ void compile_macro(FormCompiler& c, const PlanMacro& macro, FormItems body) {
 
 MacroExpander::MacroExpander(FormCompiler& c)
     : c_(c),
-      machine_(c.code.code(), c.data, {kMacroDepth, kMacroLoop, kMaxMacroSteps, 0}, c.values,
-               c.sink_) {}
+      machine_(c.code.code(), c.data,
+               {.max_call_depth = kMacroDepth, .max_loop = kMacroLoop, .max_steps = kMaxMacroSteps},
+               nullptr, c.values, c.sink_) {}
 
 std::nullopt_t MacroExpander::wrong(const PlanMacro& macro, DatumId call, std::string_view text) {
   c_.error(codes::kMacroExpansion, call, macro.name, text)

@@ -439,7 +439,7 @@ PlanMachine::Step PlanMachine::enter_unit(PlanState& state, std::uint32_t index,
     if (active.kind == FrameKind::kHandler) f = active.link + 1;
   }
   // Our own Lisp recurses over data of the plan, and ends.
-  if (depth >= limits_.max_call_depth && !data_.in_library(unit.source)) {
+  if (outermost != nullptr && depth >= limits_.max_call_depth && !data_.in_library(unit.source)) {
     if (outermost->performs != state.performs) return StopBound{unit.name, place_of(form)};
     report(codes::kPlanRecursion, form, unit.name, limits_.max_call_depth);
     return StopError{};

@@ -15,6 +15,7 @@
 #include "compiler/builtins/plan_value.h"
 #include "compiler/interpreter/plan_compiler.h"
 #include "compiler/lisp/lisp_data.h"
+#include "compiler/plan/unroll_limits.h"
 
 namespace parallax::compiler {
 
@@ -156,23 +157,17 @@ using PlanStop = std::variant<StopPerform, StopQuestion, StopProof, StopDone, St
 /// Names the calls of macros that made the form.
 void note_macro_calls(base::DiagnosticBuilder& report, const LispData& data, DatumId form);
 
-struct MachineLimits {
-  std::uint32_t max_call_depth = 8;
-  std::int64_t max_loop = 16;
-  std::int64_t max_steps = 5000000;
-  std::int64_t location_samples = 0;
-  const std::atomic<bool>* stop = nullptr;  // raised to end the unrolling early
-};
-
 /// Executes plan code on one state at a time, silently, up to the next thing that is not silent.
 /// Deterministic: the answer depends on the state alone.
 class PlanMachine {
  public:
-  PlanMachine(const PlanCode& code, const LispData& data, const MachineLimits& limits,
-              ValueStore& values, base::DiagnosticSink& sink)
+  /// `stop`, raised to end the unrolling early, may be null.
+  PlanMachine(const PlanCode& code, const LispData& data, const UnrollLimits& limits,
+              const std::atomic<bool>* stop, ValueStore& values, base::DiagnosticSink& sink)
       : code_(code),
         data_(data),
         limits_(limits),
+        stop_(stop),
         values_(values),
         sink_(sink),
         handlers_met_(code.handlers.size()) {}
@@ -232,9 +227,7 @@ class PlanMachine {
   }
   /// Says why a built-in has no value.
   void report(const BuiltinFailure& failure, std::uint32_t builtin, DatumId form);
-  bool stopped() const {
-    return limits_.stop != nullptr && limits_.stop->load(std::memory_order_relaxed);
-  }
+  bool stopped() const { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
   /// The bound of values, text or steps that was reached, or that somebody ended it.
   void report_full(DatumId at);
 
@@ -290,7 +283,8 @@ class PlanMachine {
 
   const PlanCode& code_;
   const LispData& data_;
-  MachineLimits limits_;
+  UnrollLimits limits_;
+  const std::atomic<bool>* stop_;
   ValueStore& values_;
   base::DiagnosticSink& sink_;
   std::vector<std::optional<ValueId>> globals_;

@@ -156,8 +156,8 @@ ProofWorld::Computed RuleProofs::call_builtin_named(const std::string& function,
   if (arguments.size() < entry.min_arguments || arguments.size() > entry.max_arguments) {
     return wrong_arguments(function, fmt::format("{} arguments", arguments.size()), at);
   }
-  const auto result =
-      call_builtin(*builtin, arguments, code_.classes, options_.location_samples, links_, values_);
+  const auto result = call_builtin(*builtin, arguments, code_.classes,
+                                   options_.limits.location_samples, links_, values_);
   if (const auto* value = std::get_if<ValueId>(&result)) return Value{*value};
   if (const auto* equality = std::get_if<ModelEquality>(&result)) {
     return truth_of(StopQuestion{*equality, at}, answers);

@@ -52,7 +52,7 @@ Explorer::Ruled Explorer::nothing_fits(Job& job, const StopPerform& perform, boo
     return {};
   }
   // Nothing but this ends a plan that tries again and again at one timepoint.
-  if (++job.state.missed > static_cast<std::uint32_t>(options_.max_loop)) {
+  if (++job.state.missed > options_.limits.max_loop) {
     return {false, terminal(TerminalKind::kBound, "perform", perform.form), {}};
   }
   return {true, {}, machine_.raise(job.state, values_.failure("designator-reference-failure"))};

@@ -86,7 +86,7 @@ std::vector<base::SourceRange> Explorer::calls(const PlanState& state) const {
 bool Explorer::has_room(const StateKey& key, DatumId form) {
   constexpr std::size_t kMaxWords = 8'000'000;
   key_words_ += key.size();
-  const auto limit = static_cast<std::size_t>(options_.max_locations);
+  const auto limit = static_cast<std::size_t>(options_.limits.max_locations);
   const bool many = graph_.locations.size() >= limit;
   if (!many && key_words_ <= kMaxWords) return true;
   if (!full_) {

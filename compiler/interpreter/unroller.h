@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,15 +11,13 @@
 #include "compiler/plan/plan_binding.h"
 #include "compiler/plan/plan_graph.h"
 #include "compiler/plan/pose_locator.h"
+#include "compiler/plan/unroll_limits.h"
 
 namespace parallax::compiler {
 
 struct UnrollOptions {
   std::optional<std::string> entry;  // the function to run; see unroll_plan
-  std::int32_t max_call_depth = 8;   // active calls of one function
-  std::int32_t max_loop = 16;        // iterations of a loop that nothing static ends
-  std::int64_t max_locations = 20000;
-  std::int64_t max_steps = 5000000;  // and list elements, over all paths
+  UnrollLimits limits;
   /// The model's constants and fluents. A name of the plan means the one that is equal up to case,
   /// `-` and `_` (`top-drawer` is `topDrawer`); CPL032 if there is none. Empty: names are taken as
   /// they are.
@@ -33,8 +30,7 @@ struct UnrollOptions {
   /// Explore every condition that the binding table gives a failure by its reason, not `else`
   /// alone.
   bool failures_by_reason = false;
-  bool interleave = false;            // explore every order of the performs in branches of `par`
-  std::int32_t location_samples = 0;  // further solutions of a location before there is none
+  bool interleave = false;  // explore every order of the performs in branches of `par`
   const std::atomic<bool>* stop = nullptr;  // raised to end it early: CPL054
 };
 

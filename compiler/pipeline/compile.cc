@@ -156,9 +156,7 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, const std::atomic<b
   if (!binding) return sink.already_reported();
   UnrollOptions options;
   options.entry = input.entry;
-  options.max_call_depth = input.max_call_depth;
-  options.max_loop = input.max_loop;
-  options.location_samples = input.location_samples;
+  options.limits = input.limits;
   options.interleave = input.interleave;
   options.stop = stop;
   options.failures_by_reason = input.failures_by_reason;

@@ -13,6 +13,7 @@
 #include "compiler/pipeline/compile_report.h"
 #include "compiler/plan/plan_graph.h"
 #include "compiler/plan/pose_locator.h"
+#include "compiler/plan/unroll_limits.h"
 #include "compiler/sema/check.h"
 #include "compiler/sema/typed_model.h"
 #include "compiler/syntax/loader.h"
@@ -28,9 +29,7 @@ struct PlanInput {
   std::optional<std::string> entry =
       std::nullopt;                      // the function to run; the default is the last one defined
   const PoseLocator* locator = nullptr;  // outlives the call; none: there are no regions
-  std::int32_t max_call_depth = 8;       // as in UnrollOptions
-  std::int32_t max_loop = 16;
-  std::int32_t location_samples = 0;
+  UnrollLimits limits = {};
   bool interleave = false;
   bool failures_by_reason = false;
   /// Used where neither input nor model give a horizon: as many timepoints as the longest path of

@@ -25,15 +25,13 @@ struct ModelOptions {
   std::string bind;               // the binding table
   std::string plan_entry;         // the function to run; empty: as the plan says
   std::string regions;            // the scenario whose regions the plan's poses lie in
-  std::int32_t max_loop = 16;     // iterations of a loop that nothing static ends
-  std::int32_t max_call_depth = 8;
-  std::int32_t location_samples = 0;  // further solutions that `next-solution` gives
-  std::string par = "in-order";       // the branches of `par`: in-order or interleave
-  std::int64_t max_horizon = 50;      // of plans, where nothing says the horizon
-  bool lint = false;                  // `check`: report what is legal but hardly meant
-  std::string emit_pass;              // `compile`: the pass whose value is printed
-  bool stats = false;                 // count what each axiom costs; commands offer it themselves
-  bool folded = false;                // `compile`: the model is only to be written
+  compiler::UnrollLimits unroll;
+  std::string par = "in-order";   // the branches of `par`: in-order or interleave
+  std::int64_t max_horizon = 50;  // of plans, where nothing says the horizon
+  bool lint = false;              // `check`: report what is legal but hardly meant
+  std::string emit_pass;          // `compile`: the pass whose value is printed
+  bool stats = false;             // count what each axiom costs; commands offer it themselves
+  bool folded = false;            // `compile`: the model is only to be written
 };
 
 compiler::CompileInput compile_input(const ModelOptions& options, const Context& context);

@@ -263,9 +263,7 @@ base::Status add_plan(const ModelOptions& options, std::optional<harness::Scenar
                                    .binding = *bind,
                                    .entry = std::nullopt,
                                    .locator = &*locator,
-                                   .max_call_depth = options.max_call_depth,
-                                   .max_loop = options.max_loop,
-                                   .location_samples = options.location_samples,
+                                   .limits = options.unroll,
                                    .interleave = options.par == "interleave",
                                    .max_horizon = options.max_horizon};
   if (!options.plan_entry.empty()) input.plan->entry = options.plan_entry;

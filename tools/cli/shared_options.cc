@@ -65,14 +65,16 @@ void add_plan_options(OptionTable& command, ModelOptions& options) {
   command.option("--regions", options.regions, "Scenario whose regions the plan's poses lie in")
       .needs("--plan")
       .file({"yaml"});
-  command.option("--max-loop", options.max_loop, "Iterations of a loop that nothing static ends")
+  command
+      .option("--max-loop", options.unroll.max_loop,
+              "Iterations of a loop that nothing static ends")
       .check(WholeNumber{1, 10'000})
       .show_default();
-  command.option("--max-call-depth", options.max_call_depth, "Active calls of one function")
+  command.option("--max-call-depth", options.unroll.max_call_depth, "Active calls of one function")
       .check(WholeNumber{1, 1'000})
       .show_default();
   command
-      .option("--location-samples", options.location_samples,
+      .option("--location-samples", options.unroll.location_samples,
               "Further solutions that `next-solution` has of a location")
       .check(WholeNumber{0, 1'000})
       .show_default();

@@ -217,10 +217,10 @@ TEST_CASE("codes: the outcome of one path does not hide the mistake on another")
 
 TEST_CASE("codes: limits of unrolling are reported") {
   UnrollOptions options;
-  options.max_locations = 5;
+  options.limits.max_locations = 5;
   CHECK(unroll(prelude() + "(dotimes (i 10) (sig))", options).codes() == Strings{"CPL051"});
   options = {};
-  options.max_steps = 1000;
+  options.limits.max_steps = 1000;
   CHECK(unroll("(dotimes (i 1000000) i)", options).codes() == Strings{"CPL051"});
 }
 

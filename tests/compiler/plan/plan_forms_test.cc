@@ -186,7 +186,7 @@ TEST_CASE("forms: an endless loop that comes back to its state is a cycle, not a
 
 TEST_CASE("forms: an endless loop through new states is cut at the bound") {
   UnrollOptions options;
-  options.max_loop = 3;
+  options.limits.max_loop = 3;
   const auto plan =
       unroll(prelude() + "(let ((n 0)) (loop while (>= n 0) do (sig) (incf n)))", options);
   REQUIRE(plan.graph.has_value());
@@ -197,7 +197,7 @@ TEST_CASE("forms: an endless loop through new states is cut at the bound") {
 
 TEST_CASE("forms: recursion that performs is cut at the bound") {
   UnrollOptions options;
-  options.max_call_depth = 4;
+  options.limits.max_call_depth = 4;
   const auto plan = unroll(prelude() + "(defun again () (sig) (again))(again)", options);
   CHECK(plan.codes().empty());
   REQUIRE(plan.graph.has_value());
@@ -271,7 +271,7 @@ TEST_CASE("forms: next-solution gives as many further locations as asked for") {
 )";
   UnrollOptions options;
   for (int samples = 0; samples < 3; ++samples) {
-    options.location_samples = samples;
+    options.limits.location_samples = samples;
     const auto plan = unroll(text, options);
     REQUIRE(plan.graph.has_value());
     const std::size_t performs = 2 * (static_cast<std::size_t>(samples) + 1);

@@ -55,7 +55,7 @@ TEST_CASE("hostile: recursion without end is an error or a bound") {
 
 TEST_CASE("hostile: deep calls in many states stop at a limit of memory") {
   UnrollOptions options;
-  options.max_call_depth = 1000;
+  options.limits.max_call_depth = 1000;
   const auto plan =
       unroll(prelude() +
                  "(defun f (n) (sig) (with-failure-handling ((plan-failure (e) (f (+ n "
