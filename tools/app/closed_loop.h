@@ -17,7 +17,7 @@ namespace parallax::tools {
 /// the solver decides what the model admits.
 class ClosedLoop final : public harness::LoopFeed {
  public:
-  /// `loaded`, of load_scenario_run, and `context` outlive the object. Reports
+  /// `loaded`, loaded to be run, and `context` outlive the object. Reports
   /// kQuestionNotObserved.
   static base::Result<std::unique_ptr<ClosedLoop>> make(const ScenarioModel& loaded,
                                                         Context& context);

@@ -171,8 +171,9 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
   }
   const auto before = sink;
   const auto execution = recorded_execution(header);
-  auto loaded = use == ScenarioUse::kRun ? load_scenario_run(path, execution, context)
-                                         : load_plain_run(path, execution, context);
+  auto loaded = load_scenario_model(
+      path, context,
+      {.as_run = true, .execution = execution, .plain = use == ScenarioUse::kExplain});
   const auto change =
       loaded ? harness::scenario_change(header, loaded->sources_hash) : std::string();
   if (loaded && change.empty()) {

@@ -22,8 +22,8 @@ std::filesystem::path scenario_path(const harness::JournalHeader& header);
 std::optional<harness::Comparison> recorded_comparison(const harness::JournalHeader& header);
 harness::Execution recorded_execution(const harness::JournalHeader& header);
 
-/// How a scenario is compiled: as it was run (load_scenario_run), or to be explained
-/// (load_plain_run).
+/// How a scenario is compiled: as it was run, or as it was run and to be explained
+/// (ScenarioNeeds::plain).
 enum class ScenarioUse : std::uint8_t { kRun, kExplain };
 
 /// Loads the scenario of a run, which must be the one that was run: kReplayImpossible if it is not,

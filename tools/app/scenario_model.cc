@@ -101,26 +101,17 @@ base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scen
 /// How a model is compiled beyond what the user says.
 struct Switches {
   bool costs = false;
-  bool plain = false;  // plain_models.h
   std::string emit_pass = {};
   bool folded = false;
-  std::optional<std::int64_t> horizon = std::nullopt;
-  bool with_plan = true;
-  bool lint = false;
-  /// Nothing is simulated: unobserved events need no action, and where the plan is executed its
-  /// failures raise what their reasons are bound to.
-  bool watched = false;
-  bool as_run = false;  // in closed loop, if the scenario or `execution` says so
-  std::optional<harness::Execution> execution = std::nullopt;
-  harness::ScenarioSettings* settings = nullptr;  // as in LoadLimits
+  ScenarioNeeds needs = {};
   void apply(compiler::CompileInput& input) const {
     input.costs = costs;
     input.emit_pass = emit_pass;
     input.folded = folded;
-    input.lint = input.lint || lint;
-    if (horizon) input.horizon = *horizon;
-    if (!with_plan) input.plan.reset();
-    if (!plain) return;
+    input.lint = input.lint || needs.lint;
+    if (needs.horizon) input.horizon = *needs.horizon;
+    if (!needs.with_plan) input.plan.reset();
+    if (!needs.plain) return;
     input.ground.relevance = false;
     input.ground.invariants = false;
   }
@@ -153,13 +144,14 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
                                  const std::optional<std::string>& property = std::nullopt,
                                  const std::vector<std::string>& minimize = {}, bool best = false) {
   auto& sink = context.sink();
+  const auto& needs = switches.needs;
   if (!expect_kind(path.string(), {FileKind::kScenario}, "a scenario", context)) {
     return sink.already_reported();
   }
   const auto first = context.files().size();  // what was read before is no part of it
   auto scenario = harness::load_scenario(
       path, context.files(), sink,
-      harness::LoadLimits{context.form().allow_outside, &context.stop(), switches.settings});
+      harness::LoadLimits{context.form().allow_outside, &context.stop(), needs.settings});
   if (!scenario) return sink.already_reported();
   auto scenario_hash = harness::hash_of_sources(context.files(), first);
   note_command(scenario->simulator.command, context.files());
@@ -167,17 +159,17 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
   auto input = compile_input(*scenario, locator, context);
   if (!input) return sink.already_reported();
   switches.apply(*input);
-  if (switches.execution) scenario->execution = *switches.execution;
-  const bool closed = switches.as_run && scenario->execution == harness::Execution::kClosedLoop;
+  if (needs.execution) scenario->execution = *needs.execution;
+  const bool closed = needs.as_run && scenario->execution == harness::Execution::kClosedLoop;
   if (closed) {
     if (!input->plan) {
       const auto& key = scenario->execution_source;
-      const bool written = !switches.execution;
+      const bool written = !needs.execution;
       return sink.error(codes::kNoPlanToExecute,
                         written ? key : base::SourceRange{scenario->source, 0, 0});
     }
     execute(*scenario, *input);
-  } else if (switches.watched && input->plan) {
+  } else if (needs.watched && input->plan) {
     input->plan->failures_by_reason = scenario->execution == harness::Execution::kClosedLoop;
   }
   if (property && !look_for_violations(*property, *input, context)) {
@@ -208,7 +200,7 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
       return sink.already_reported();
     }
   }
-  if (switches.watched) {
+  if (needs.watched) {
     std::erase_if(events, [&](const std::string& event) {
       const auto symbol = base::symbol_of(event);
       const auto& unobserved = scenario->unobserved;
@@ -333,39 +325,20 @@ base::Result<compiler::Compilation> compile(const ModelOptions& options, Context
 
 }  // namespace
 
-base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
-                                                Context& context) {
-  return load(path, context, {});
-}
-
-base::Result<ScenarioModel> load_compared_scenario(const std::filesystem::path& path,
-                                                   harness::ScenarioSettings& settings,
-                                                   Context& context) {
-  Switches switches;
-  switches.settings = &settings;
-  return load(path, context, switches);
-}
-
-base::Result<ScenarioModel> load_watched_scenario(const std::filesystem::path& path,
-                                                  Context& context) {
-  return load(path, context, {.watched = true});
-}
-
-base::Result<ScenarioModel> load_scenario_run(const std::filesystem::path& path,
-                                              std::optional<harness::Execution> execution,
-                                              Context& context, bool lint) {
-  return load(path, context, {.lint = lint, .as_run = true, .execution = execution});
+base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path, Context& context,
+                                                const ScenarioNeeds& needs) {
+  return load(path, context, {.needs = needs});
 }
 
 std::optional<compiler::CompiledModel> compile_variant(const harness::Scenario& scenario,
                                                        std::int64_t horizon, bool with_plan,
                                                        Context& context) {
   Context own(context.form(), context.stop());
-  auto loaded = load(scenario.file, own,
-                     {.horizon = horizon,
-                      .with_plan = with_plan,
-                      .watched = true,
-                      .execution = scenario.execution});
+  auto loaded = load_scenario_model(scenario.file, own,
+                                    {.execution = scenario.execution,
+                                     .watched = true,
+                                     .with_plan = with_plan,
+                                     .horizon = horizon});
   if (!loaded) return std::nullopt;
   return std::move(loaded->compilation.model);
 }
@@ -409,18 +382,13 @@ base::Result<compiler::Compilation> compile_edited(const harness::Scenario& scen
   return compiler::compile_model(*input, context.files(), context.sink());
 }
 
-base::Result<ScenarioModel> load_plain_run(const std::filesystem::path& path,
-                                           harness::Execution execution, Context& context) {
-  return load(path, context, {.plain = true, .as_run = true, .execution = execution});
-}
-
 base::Result<compiler::Compilation> compile_models(const ModelOptions& options, Context& context) {
-  return compile(options, context, {options.stats, false, options.emit_pass, options.folded});
+  return compile(options, context, {options.stats, options.emit_pass, options.folded});
 }
 
 base::Result<compiler::Compilation> compile_plain_models(const ModelOptions& options,
                                                          Context& context) {
-  return compile(options, context, {false, true});
+  return compile(options, context, {.needs = {.plain = true}});
 }
 
 base::Result<base::SourceRange> formula_argument(const std::string& option, const std::string& text,

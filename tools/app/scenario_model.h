@@ -35,27 +35,29 @@ struct ScenarioModel {
   std::string world_hash = {};  // over its texts
 };
 
-/// The scenario to be run in the way that it asks for, or `execution`: for closed loop the model is
-/// compiled without constraints, for as many timepoints as an execution of the plan may take, and
-/// with a way for each reason of a failure. Reports kNoPlanToExecute. `lint`: also reports what is
-/// legal but hardly meant.
-base::Result<ScenarioModel> load_scenario_run(const std::filesystem::path& path,
-                                              std::optional<harness::Execution> execution,
-                                              Context& context, bool lint = false);
+/// How a command needs a scenario's model.
+struct ScenarioNeeds {
+  /// In the way that the scenario, or `execution`, asks for: for closed loop the model is compiled
+  /// without constraints, for as many timepoints as an execution of the plan may take, and with a
+  /// way for each reason of a failure. Reports kNoPlanToExecute.
+  bool as_run = false;
+  std::optional<harness::Execution> execution = std::nullopt;
+  /// Nothing is simulated: unobserved events need no action, and where the plan is executed its
+  /// failures raise what their reasons are bound to.
+  bool watched = false;
+  /// Grounded without settling anything in advance, so that every axiom's clauses say what it says:
+  /// for explanations.
+  bool plain = false;
+  bool lint = false;  // also report what is legal but hardly meant
+  bool with_plan = true;
+  std::optional<std::int64_t> horizon = std::nullopt;  // instead of the scenario's
+  harness::ScenarioSettings* settings = nullptr;       // as in LoadLimits
+};
 
 /// Reads the scenario, compiles model, plan and constraints, and checks the mapping and the actions
 /// against the model.
-base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
-                                                Context& context);
-
-/// The same for comparing it with another: also lists what it says beside model and plan.
-base::Result<ScenarioModel> load_compared_scenario(const std::filesystem::path& path,
-                                                   harness::ScenarioSettings& settings,
-                                                   Context& context);
-
-/// The same where nothing is simulated: the scenario's unobserved events need no action.
-base::Result<ScenarioModel> load_watched_scenario(const std::filesystem::path& path,
-                                                  Context& context);
+base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path, Context& context,
+                                                const ScenarioNeeds& needs = {});
 
 /// Reads the files of the scenario's plan, in their order.
 base::Result<std::vector<base::FileId>> load_scenario_plan(const harness::Scenario& scenario,
@@ -78,11 +80,8 @@ base::Result<compiler::Compilation> compile_with_model(const harness::Scenario& 
 /// compiled before and brings neither the checked model nor the plan's graph.
 base::Result<compiler::Compilation> compile_models(const ModelOptions& options, Context& context);
 
-/// As load_scenario_run and compile_models, with a model that was grounded without settling
-/// anything in advance, so that every axiom's clauses say what it says: for explanations. Models
-/// that were compiled before are taken as they are.
-base::Result<ScenarioModel> load_plain_run(const std::filesystem::path& path,
-                                           harness::Execution execution, Context& context);
+/// The same for explanations (ScenarioNeeds::plain). Models that were compiled before are taken as
+/// they are.
 base::Result<compiler::Compilation> compile_plain_models(const ModelOptions& options,
                                                          Context& context);
 

@@ -45,7 +45,8 @@ std::vector<harness::LoopStart> loop_starts(const ScenarioModel& loaded, ClosedL
 void measure_loop(Bench& bench) {
   bench.begin("the kitchen, the repaired plan in closed loop");
   Context context;
-  const auto loaded = load_scenario_run(kLoopScenario, harness::Execution::kClosedLoop, context);
+  const auto loaded = load_scenario_model(
+      kLoopScenario, context, {.as_run = true, .execution = harness::Execution::kClosedLoop});
   const auto loop = *ClosedLoop::make(*loaded, context);
   const harness::ModelFluents fluents(*loop->symbols());
   harness::OdeSimulator simulator(loaded->scenario.world);

@@ -84,7 +84,7 @@ void write_log(const ScenarioModel& loaded, const std::string& path, Context& co
 void measure_monitor(Bench& bench) {
   bench.begin("a log of the kitchen held against its model and plan");
   Context context;
-  const auto loaded = load_watched_scenario(kWatched, context);
+  const auto loaded = load_scenario_model(kWatched, context, {.watched = true});
   const auto path = bench.path("kitchen.jsonl");
   write_log(*loaded, path, context);
   for (const bool with_plan : {true, false}) {

@@ -119,8 +119,9 @@ void measure_starts(Bench& bench) {
   double uniform_runs = 0.0, guided_runs = 0.0;
   for (const auto& plan : kPlans) {
     Context context;
-    const auto loaded = load_scenario_run(folder / fmt::format("play_{}.yaml", plan.name),
-                                          harness::Execution::kClosedLoop, context);
+    const auto loaded =
+        load_scenario_model(folder / fmt::format("play_{}.yaml", plan.name), context,
+                            {.as_run = true, .execution = harness::Execution::kClosedLoop});
     const auto uniform = play(*loaded, false, context), guided = play(*loaded, true, context);
     uniform_runs += uniform.runs;
     guided_runs += guided.runs;

@@ -46,7 +46,8 @@ int check(const CheckOptions& check_options, Invocation& invocation) {
   for (const auto& path : options.models) {
     // Reports into the sink; a result says only that there was nothing to report.
     if (is_scenario(path)) {
-      const auto loaded = load_scenario_run(path, std::nullopt, invocation, !check_options.no_lint);
+      const auto loaded =
+          load_scenario_model(path, invocation, {.as_run = true, .lint = !check_options.no_lint});
       if (!loaded) continue;
       report_dead_retries(loaded->compilation, invocation);
       report_dead_handlers(loaded->compilation, invocation);

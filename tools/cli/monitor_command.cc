@@ -89,7 +89,7 @@ int monitor(const MonitorOptions& options, Invocation& invocation) {
   }
   auto file = open_log(options.log, invocation.sink());
   if (!file) return 0;
-  const auto loaded = load_watched_scenario(options.scenario, invocation);
+  const auto loaded = load_scenario_model(options.scenario, invocation, {.watched = true});
   if (!loaded) return 0;
   const auto watch = Watch::make(*loaded, watch_options(options), invocation);
   if (!watch) return 0;

@@ -247,7 +247,8 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   for (const auto one : {Execution::kOpenLoop, Execution::kClosedLoop}) {
     if (options.execution == to_string(one)) execution = one;
   }
-  auto loaded = load_scenario_run(options.scenario, execution, invocation);
+  auto loaded =
+      load_scenario_model(options.scenario, invocation, {.as_run = true, .execution = execution});
   if (!loaded) return 0;
   apply(options, loaded->scenario);
   if (!options.strategy.empty() && loaded->scenario.search.runs == 0) {

@@ -98,7 +98,7 @@ void add_command_files(const std::string& path, const harness::Scenario& scenari
 base::Result<ModelRevision> load_scenario_revision(const std::string& path, Context& context) {
   ModelRevision out{path, RevisionKind::kScenario, {}, harness::ScenarioSettings(), std::nullopt,
                     false};
-  auto loaded = load_compared_scenario(path, *out.settings, context);
+  auto loaded = load_scenario_model(path, context, {.settings = &*out.settings});
   if (!loaded) return context.sink().already_reported();
   const auto& scenario = loaded->scenario;
   add_command_files(path, scenario, *out.settings);

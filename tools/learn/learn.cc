@@ -57,10 +57,11 @@ class ScenarioLearner {
   base::Result<LearnResult> run() {
     auto& sink = context_.sink();
     // Loads it as it asks for, then for closed loop: both must be possible.
-    auto own = load_scenario_run(options_.scenario, std::nullopt, context_);
+    auto own = load_scenario_model(options_.scenario, context_, {.as_run = true});
     if (!own) return sink.already_reported();
     own_execution_ = own->scenario.execution;
-    loaded_ = load_scenario_run(options_.scenario, Execution::kClosedLoop, context_);
+    loaded_ = load_scenario_model(options_.scenario, context_,
+                                  {.as_run = true, .execution = Execution::kClosedLoop});
     if (!*loaded_) return sink.already_reported();
     if (!prepare()) return sink.already_reported();
     go();

@@ -64,7 +64,7 @@ struct LearnResult {
 /// first without any effects. Each deviation gives another model, which admits every run so far,
 /// until a run of the scenario is clean, the budget is used up or nothing more can be learned.
 /// Everything is written to `out`: the model, a scenario with it, a log, and the rounds, each a run
-/// folder with its model. Reports what load_scenario_run reports. `make_simulator` is asked for
+/// folder with its model. Reports what load_scenario_model reports. `make_simulator` is asked for
 /// worlds that are not models; it is given the scenario as it was loaded.
 base::Result<LearnResult> learn(
     const LearnOptions& options,

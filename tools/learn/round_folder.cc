@@ -45,7 +45,8 @@ std::optional<OpenRound> RoundFolder::begin(const LearnRound& told, std::string_
   auto form = context_->form();
   form.allow_outside = true;
   round.context = std::make_unique<Context>(form, context_->stop());
-  auto loaded = load_scenario_run(round.folder / "scenario.yaml", execution, *round.context);
+  auto loaded = load_scenario_model(round.folder / "scenario.yaml", *round.context,
+                                    {.as_run = true, .execution = execution});
   if (!loaded) {
     why = fmt::format("the model of round {} cannot be run: {}", told.number,
                       first_error(round.context->sink()));

@@ -23,7 +23,8 @@ base::Result<ScenarioModel> load(const RepairOptions& options, const harness::Jo
   }
   const auto path =
       options.folder.scenario.empty() ? scenario_path(header) : fs::path(options.folder.scenario);
-  return load_plain_run(path, recorded_execution(header), context);
+  return load_scenario_model(
+      path, context, {.as_run = true, .execution = recorded_execution(header), .plain = true});
 }
 
 /// A run that was ended before its verdict has no report, or one that decides nothing.

@@ -217,7 +217,8 @@ class Rounds {
   /// Runs the copies as the recorded run was run; false: there is nothing more to repair.
   base::Result<bool> run_again(const std::string& folder, RepairRound& round) {
     auto& sink = context_.sink();
-    auto loaded = load_scenario_run(copy_->scenario(), recorded_execution(header_), context_);
+    auto loaded = load_scenario_model(copy_->scenario(), context_,
+                                      {.as_run = true, .execution = recorded_execution(header_)});
     if (!loaded) return sink.already_reported();
     auto result = campaign(*loaded, folder);
     if (!result) return sink.already_reported();
