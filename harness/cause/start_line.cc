@@ -26,14 +26,6 @@ constexpr std::array<std::string_view, 4> kVerdictWords = {"fails", "clean", "ot
 constexpr std::array<std::string_view, 4> kRoleWords = {"open", "indifferent", "decides",
                                                         "no-start"};
 
-template <typename Value, std::size_t kCount>
-std::optional<Value> value_of(const std::array<std::string_view, kCount>& words,
-                              std::string_view word) {
-  const auto found = std::find(words.begin(), words.end(), word);
-  if (found == words.end()) return std::nullopt;
-  return static_cast<Value>(found - words.begin());
-}
-
 double between(double a, double b) { return a + 0.5 * (b - a); }
 
 StartPoint with(StartPoint start, std::size_t parameter, double value) {
@@ -48,14 +40,8 @@ bool tells(StartVerdict verdict) { return verdict != StartVerdict::kNoStart; }
 std::string_view to_string(StartVerdict verdict) {
   return kVerdictWords[static_cast<std::size_t>(verdict)];
 }
-std::optional<StartVerdict> start_verdict(std::string_view word) {
-  return value_of<StartVerdict>(kVerdictWords, word);
-}
 std::string_view to_string(ParameterRole role) {
   return kRoleWords[static_cast<std::size_t>(role)];
-}
-std::optional<ParameterRole> parameter_role(std::string_view word) {
-  return value_of<ParameterRole>(kRoleWords, word);
 }
 
 bool BorderBracket::is_narrow() const {
@@ -166,11 +152,6 @@ ShrunkStart shrink_start(const std::vector<CellParameter>& cell, StartPoint fail
   PARALLAX_REQUIRE(failing.size() == cell.size() && tolerances.size() == cell.size(),
                    "one value and one tolerance for each parameter");
   return Shrinker(cell, std::move(failing), probe).run(tolerances);
-}
-
-bool LineScan::has_gaps() const {
-  return std::any_of(points.begin(), points.end(),
-                     [](const auto& point) { return !tells(point.verdict); });
 }
 
 LineScan scan_line(const CellParameter& range, std::size_t parameter, const StartPoint& failing,

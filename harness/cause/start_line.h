@@ -19,7 +19,6 @@ enum class StartVerdict : std::uint8_t {
 };
 /// "fails", "clean", "otherwise", "no-start"
 std::string_view to_string(StartVerdict verdict);
-std::optional<StartVerdict> start_verdict(std::string_view word);
 
 /// Values of the parameters of a start, in a fixed order.
 using StartPoint = std::vector<double>;
@@ -66,7 +65,6 @@ enum class ParameterRole : std::uint8_t {
 };
 /// "open", "indifferent", "decides", "no-start"
 std::string_view to_string(ParameterRole role);
-std::optional<ParameterRole> parameter_role(std::string_view word);
 
 /// A failing start, as near to the middle of its cell as whole moves of single parameters take it.
 struct ShrunkStart {
@@ -95,8 +93,6 @@ struct LineScan {
   std::vector<Point> points;           // by value, before any bracket was narrowed
   std::vector<BorderBracket> borders;  // between neighbours of which one fails
   bool finished = false;
-  /// No simulation told anything between these neighbours.
-  bool has_gaps() const;
 };
 /// Probes `points` (two or more) values from end to end, evenly spaced, then narrows each change.
 LineScan scan_line(const CellParameter& range, std::size_t parameter, const StartPoint& failing,

@@ -221,11 +221,10 @@ class ScenarioReader {
       events.may_be_absent();
       events.texts(Key::kUnobserved, scenario.unobserved);
     }
-    if (const auto* node = fields_.require(Key::kHorizon)) {
+    if (fields_.require(Key::kHorizon) != nullptr) {
       std::int64_t horizon = 0;
       fields_.integer(Key::kHorizon, 1, kMaxHorizon, horizon);
       scenario.horizon = static_cast<std::int32_t>(horizon);
-      scenario.horizon_source = node->range;
     }
   }
 

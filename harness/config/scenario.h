@@ -135,7 +135,6 @@ struct Scenario {
   std::optional<LocatedText> bind;
   std::vector<LocatedText> constraints;
   std::int32_t horizon = 0;
-  base::SourceRange horizon_source;
   /// Event symbols: they may happen without being told of (`parallax monitor`).
   std::vector<std::string> unobserved;
   WorldSpec world;

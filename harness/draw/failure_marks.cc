@@ -56,7 +56,7 @@ void mark_line(const Scene& scene, const WorldSpec& spec, const ShortReach& miss
   Eigen::Vector3d end = missed.there_W, shoulder = missed.there_W;
   end.x() += end.x() > base->x() ? missed.margin_m : -missed.margin_m;
   shoulder.x() = base->x();
-  action.reach = SceneReach{shoulder, 0.0, std::abs(end.x() - base->x())};
+  action.reach = SceneReach{shoulder, std::abs(end.x() - base->x())};
   action.measures.push_back(
       {end, missed.there_W,
        fmt::format("`{}` {} out of reach", missed.name, length_text(-missed.margin_m))});
@@ -78,7 +78,7 @@ void mark_gantry(const SceneArm& shown, const ArmSpec& arm, const ShortReach& mi
   const bool far = (missed.there_W - shown.from_W).norm() > arm.min_reach_m;
   const double limit_m = far ? arm.max_reach_m : arm.min_reach_m;
   const double distance_m = far ? limit_m - missed.margin_m : limit_m + missed.margin_m;
-  action.reach = SceneReach{shown.from_W, arm.min_reach_m, arm.max_reach_m};
+  action.reach = SceneReach{shown.from_W, arm.max_reach_m};
   action.measures.push_back({shown.from_W, missed.there_W,
                              fmt::format("`{}` {} from the shoulder, {} {} reach ({})", missed.name,
                                          length_text(distance_m), length_text(-missed.margin_m),

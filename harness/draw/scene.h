@@ -68,10 +68,10 @@ struct SceneMeasure {
   std::string label;  // "`base` and `drawer_mid` overlap by 43 mm"
 };
 
-/// The range of an arm's reach.
+/// How far an arm reaches.
 struct SceneReach {
   Eigen::Vector3d shoulder_W = Eigen::Vector3d::Zero();
-  double min_m = 0.0, max_m = 0.0;
+  double max_m = 0.0;
 };
 
 /// The marks of one action, to be drawn over the world as it stands at its end.

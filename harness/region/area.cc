@@ -188,16 +188,6 @@ std::string shape_text(const PlaneShape& shape, const PlanePoint& offset) {
   return fmt::format("the polygon {}", fmt::join(corners, " "));
 }
 
-std::vector<PlanePoint> circle_of(const PlanePoint& at, double radius_m) {
-  constexpr int kCorners = 48;
-  std::vector<PlanePoint> out;
-  for (int i = 0; i < kCorners; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / kCorners;
-    out.push_back({at[0] + radius_m * std::cos(angle), at[1] + radius_m * std::sin(angle)});
-  }
-  return out;
-}
-
 }  // namespace
 
 std::string fault_of(const PlaneShape& shape) {
@@ -296,19 +286,6 @@ std::string Area::text(const PlanePoint& offset) const {
   std::vector<std::string> texts;
   for (const auto& part : parts_) texts.push_back(shape_text(part.shape, offset));
   return fmt::format("{}", fmt::join(texts, " or "));
-}
-
-std::vector<std::vector<PlanePoint>> Area::outlines() const {
-  std::vector<std::vector<PlanePoint>> out;
-  for (const auto& part : parts_) {
-    if (const auto* ring = std::get_if<RingShape>(&part.shape)) {
-      out.push_back(circle_of(ring->at, ring->outer_m));
-      if (ring->inner_m > 0.0) out.push_back(circle_of(ring->at, ring->inner_m));
-    } else {
-      out.push_back(std::get<PolygonShape>(part.shape).corners);
-    }
-  }
-  return out;
 }
 
 }  // namespace parallax::harness

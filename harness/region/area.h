@@ -51,8 +51,6 @@ class Area {
   double total_size_m2() const { return cumulative_.back(); }
   /// "a disc of 0.1 m around (1, 0)"; `offset` is added to its places.
   std::string text(const PlanePoint& offset = {}) const;
-  /// Corners along the border of each shape, holes after what they are in.
-  std::vector<std::vector<PlanePoint>> outlines() const;
 
  private:
   struct Triangle {
