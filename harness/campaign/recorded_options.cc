@@ -78,13 +78,12 @@ void set_word(const Fields& fields, const char* key, std::span<const std::string
 }
 
 PaperRuleSpec paper_of(const Fields& fields) {
-  using namespace std::string_view_literals;
   PaperRuleSpec paper;
   paper.preset = fields.get<std::string>("preset").value_or(paper.preset);
-  set_word(fields, "sigma", std::array{"sse"sv, "rmse"sv, "residual-sd"sv}, paper.sigma);
-  set_word(fields, "root", std::array{"initial"sv, "final"sv}, paper.root);
-  set_word(fields, "intercept", std::array{"none"sv, "centred"sv, "free"sv}, paper.intercept);
-  set_word(fields, "interval", std::array{"mean"sv, "prediction"sv}, paper.interval);
+  set_word(fields, "sigma", kSigmaWords, paper.sigma);
+  set_word(fields, "root", kRootWords, paper.root);
+  set_word(fields, "intercept", kInterceptWords, paper.intercept);
+  set_word(fields, "interval", kIntervalWords, paper.interval);
   fields.count("extra_runs");
   paper.extra_runs = fields.get<std::int64_t>("extra_runs").value_or(paper.extra_runs);
   paper.exempt_inherited = fields.flag("exempt_inherited");
@@ -95,7 +94,6 @@ PaperRuleSpec paper_of(const Fields& fields) {
 }
 
 void read_criterion(const Fields& fields, std::string& wrong, RecordedOptions& out) {
-  using namespace std::string_view_literals;
   if (const auto kind = fields.word("kind", kCriterionWords)) {
     out.criterion = static_cast<CriterionKind>(*kind);
   }

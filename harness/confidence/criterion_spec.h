@@ -30,6 +30,11 @@ enum class SigmaKind : std::uint8_t { kSse, kRmse, kResidualSd };
 enum class RootKind : std::uint8_t { kInitial, kFinal };
 enum class InterceptKind : std::uint8_t { kNone, kCentred, kFree };
 enum class IntervalKind : std::uint8_t { kMean, kPrediction };
+/// Their words in scenarios, headers of journals and reports, by value.
+inline constexpr std::array<std::string_view, 3> kSigmaWords = {"sse", "rmse", "residual-sd"};
+inline constexpr std::array<std::string_view, 2> kRootWords = {"initial", "final"};
+inline constexpr std::array<std::string_view, 3> kInterceptWords = {"none", "centred", "free"};
+inline constexpr std::array<std::string_view, 2> kIntervalWords = {"mean", "prediction"};
 
 /// The readings of the paper's rule (docs/statistics.md has the table of ambiguities).
 struct PaperRuleSpec {

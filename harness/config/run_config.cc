@@ -16,10 +16,6 @@ constexpr std::int64_t kMaxPerforms = 10'000;
 constexpr std::array<std::string_view, 6> kKinds = {
     "clean-runs", "paper", "anytime", "clopper-pearson", "paper-literal", "paper-repaired"};
 constexpr std::array<std::string_view, 2> kPresets = {"paper-literal", "paper-repaired"};
-constexpr std::array<std::string_view, 3> kSigmas = {"sse", "rmse", "residual-sd"};
-constexpr std::array<std::string_view, 2> kRoots = {"initial", "final"};
-constexpr std::array<std::string_view, 3> kIntercepts = {"none", "centred", "free"};
-constexpr std::array<std::string_view, 2> kIntervals = {"mean", "prediction"};
 
 /// Takes the position of a word as the enumerator, which stands at the same one in its enum.
 template <typename Enum, std::size_t Count>
@@ -35,10 +31,10 @@ bool read_enum(const YamlFields& fields, std::string_view key,
 void read_paper_rule(const YamlFields& fields, PaperRuleSpec& rule) {
   const auto preset = fields.choice(Key::kPreset, Key::kPreset, kPresets);
   if (preset) rule = *preset == 1 ? paper_repaired() : paper_literal();
-  bool changed = read_enum(fields, Key::kSigma, kSigmas, rule.sigma);
-  changed = read_enum(fields, Key::kRoot, kRoots, rule.root) || changed;
-  changed = read_enum(fields, Key::kIntercept, kIntercepts, rule.intercept) || changed;
-  changed = read_enum(fields, Key::kInterval, kIntervals, rule.interval) || changed;
+  bool changed = read_enum(fields, Key::kSigma, kSigmaWords, rule.sigma);
+  changed = read_enum(fields, Key::kRoot, kRootWords, rule.root) || changed;
+  changed = read_enum(fields, Key::kIntercept, kInterceptWords, rule.intercept) || changed;
+  changed = read_enum(fields, Key::kInterval, kIntervalWords, rule.interval) || changed;
   changed = changed || fields.find(Key::kExtraRuns) != nullptr ||
             fields.find(Key::kExemptInherited) != nullptr ||
             fields.find(Key::kToleranceM) != nullptr || fields.find(Key::kBonferroni) != nullptr;

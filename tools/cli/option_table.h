@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -14,6 +16,11 @@ namespace parallax::tools {
 struct OneOf {
   std::vector<std::string> values;
 };
+/// One of the words of an enum.
+template <std::size_t kCount>
+OneOf one_of(const std::array<std::string_view, kCount>& words) {
+  return {{words.begin(), words.end()}};
+}
 struct WholeNumber {  // every character of it
   std::int64_t lower, upper;
 };

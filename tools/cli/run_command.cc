@@ -372,12 +372,12 @@ Command run_command() {
       .option("--execution", options->execution,
               "Simulate open-loop (events of traces) or closed-loop (the plan itself)")
       .details("In closed loop the plan goes on by what the simulator reports.")
-      .check(OneOf{{"open-loop", "closed-loop"}});
+      .check(one_of(harness::kExecutions));
   command
       .option("--starts", options->starts,
               "Closed loop: initial states are uniform, or guided to behaviour not yet seen")
       .details("guided: first where the model has a path that no execution has taken yet.")
-      .check(OneOf{{"uniform", "guided"}});
+      .check(one_of(harness::kStartsWords));
   command.heading("What is claimed");
   command.option("--confidence", options->confidence, "Confidence level C of the claim")
       .check(FiniteNumber{0.5, 0.999999});

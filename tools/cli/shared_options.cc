@@ -112,7 +112,7 @@ void add_judging_options(OptionTable& command, JudgingOptions& options) {
   command
       .option("--compare", options.compare,
               "When: at every step, or in the last state only, as the criterion paper does")
-      .check(OneOf{{"every-step", "final"}});
+      .check(one_of(harness::kComparisons));
 }
 
 void apply(const JudgingOptions& options, harness::Scenario& scenario) {
