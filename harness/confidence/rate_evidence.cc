@@ -128,6 +128,10 @@ std::optional<std::int64_t> runs_to_tell(const RateClaim& claim, const RateCount
   });
 }
 
+double clopper_pearson_lower(std::int64_t failures, std::int64_t runs, double confidence_level) {
+  return 1.0 - clopper_pearson_upper(runs - failures, runs, confidence_level);
+}
+
 double fisher_worse(const RateCounts& before, const RateCounts& after) {
   require_rate_counts(before);
   require_rate_counts(after);

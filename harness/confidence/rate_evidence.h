@@ -51,6 +51,9 @@ std::optional<std::int64_t> runs_to_support(const RateClaim& claim, std::int64_t
 std::optional<std::int64_t> runs_to_tell(const RateClaim& claim, const RateCounts& counts,
                                          std::int64_t most);
 
+/// Clopper and Pearson 1934: bounds of one side, for a number of runs fixed in advance.
+double clopper_pearson_lower(std::int64_t failures, std::int64_t runs, double confidence_level);
+
 /// Are failures more probable in `after` than in `before`? Fisher's exact test, of one side: the
 /// probability of as many or more of all failures on the new side if they are equally probable.
 /// Lost runs count as failures before and as none after, so that what is found is found in any
