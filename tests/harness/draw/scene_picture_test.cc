@@ -74,7 +74,7 @@ Picture failed_placing(const std::string& thing, const std::string& region) {
   action.predicted_regions = {region};
   action.predicted.boxes = {box(thing, SceneKind::kItem, {1.2, 0.1, 0.05}, {0.1, 0.1, 0.1})};
   action.measures = {{{1.0, 0.1, 0.05}, {0.8, 0.1, 0.05}, "`" + thing + "` 200 mm outside"}};
-  action.reach = SceneReach{{0.0, 0.0, 0.6}, 0.2, 0.9};
+  action.reach = SceneReach{{0.0, 0.0, 0.6}, 0.9};
   action.tracks = {{thing, SceneKind::kItem, {{0.6, 0.1, 0.3}, {0.8, 0.1, 0.05}}}};
   return picture;
 }
