@@ -110,7 +110,10 @@ class Campaign {
 
   base::Result<TraceEnd> one_trace(CampaignTrace trace) {
     auto trial = Trial::prepare(bench_, std::move(trace));
-    if (!trial || !announce(*trial)) return sink_.already_reported();
+    if (!trial) return sink_.already_reported();
+    // Stopped while initial states were listed: the trace is not known as it is to be written down.
+    if (bench_.stopped()) return TraceEnd::kStopped;
+    if (!announce(*trial)) return sink_.already_reported();
     trial->continue_from(*journal_);
     trial->announce_by([this](const TracePlan& plan) { return announce_start(plan); });
     const TraceContext context{scenario_, options_, family_, bench_,          *journal_,

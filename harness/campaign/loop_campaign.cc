@@ -17,7 +17,6 @@
 #include "harness/campaign/repetition.h"
 #include "harness/campaign/run_setup.h"
 #include "harness/campaign/start_check.h"
-#include "harness/campaign/start_words.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/item_bounds.h"
 
@@ -106,7 +105,7 @@ class LoopCampaign {
     for (;;) {
       const auto decision = criterion_->decide(tally_);
       report_progress(decision);
-      if (decision.stop && is_covered()) return visit_others();
+      if (decision.stop && is_covered()) return End::kDecided;
       if (executions() >= limit_.max_runs) return End::kRunLimit;
       if (goes_on_anyway() && executions() >= planned() && is_covered()) return End::kPlanned;
       samples_.submit_to(last_wanted(decision));
@@ -117,27 +116,6 @@ class LoopCampaign {
       if (!end) return sink_.already_reported();
       if (*end) return **end;
     }
-  }
-
-  /// Executes the plan once from each initial state that no execution was seen from, where the
-  /// limit of runs has room for it. These count for no claim.
-  base::Result<End> visit_others() {
-    std::vector<std::int64_t> left;
-    for (std::int64_t state = 1; state <= samples_.initial_states(); ++state) {
-      const auto found = stream_.starts.states.find(state);
-      if (found == stream_.starts.states.end() || found->second.seen() == 0) left.push_back(state);
-    }
-    if (std::ssize(left) > limit_.max_runs - executions()) return End::kDecided;
-    for (const auto state : left) {
-      auto next = samples_.visit(state);
-      if (!next || !check_written(*journal_, options_, sink_)) return sink_.already_reported();
-      if (!*next) return End::kStopped;
-      ++stream_.starts.visits;
-      auto end = consume(**std::move(next));
-      if (!end) return sink_.already_reported();
-      if (*end) return **end;
-    }
-    return End::kDecided;
   }
 
   /// Counts an execution by its initial state.
@@ -411,9 +389,9 @@ class LoopCampaign {
     const bool decided =
         criterion_->decide(tally_).stop && stream.loop->unfinished == 0 && is_covered();
     stream.is_decided = decided;
-    stream.verdict = !result_.discrepancies.empty()          ? CampaignVerdict::kDiscrepancy
-                     : decided && stream.starts.is_covered() ? CampaignVerdict::kNoDiscrepancy
-                                                             : CampaignVerdict::kInconclusive;
+    stream.verdict = !result_.discrepancies.empty() ? CampaignVerdict::kDiscrepancy
+                     : decided                      ? CampaignVerdict::kNoDiscrepancy
+                                                    : CampaignVerdict::kInconclusive;
     const auto guided = stream.loop->guided.value_or(0);
     stream.simulations = executions() + guided;
     const auto bound = certified_bound(tally_, criterion.confidence_level);
@@ -431,8 +409,10 @@ class LoopCampaign {
       stream.claim = "nothing is claimed: an execution did not end";
       stream.caveats.push_back(stream.loop->why_unfinished);
     }
-    if (decided && !stream.starts.is_covered()) {
-      add_start_caveats(stream.starts, limit_.max_runs, stream.caveats);
+    const auto& starts = stream.starts;
+    if (decided && starts.tried < *starts.all) {
+      stream.caveats.push_back(fmt::format("{} of {} initial states began no execution",
+                                           *starts.all - starts.tried, *starts.all));
     }
     if (guided > 0) {
       stream.caveats.push_back(fmt::format(

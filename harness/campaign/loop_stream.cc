@@ -135,14 +135,6 @@ base::Result<std::optional<SampleRecord>> LoopStream::next() {
   return record;
 }
 
-base::Result<std::optional<SampleRecord>> LoopStream::visit(std::int64_t state) {
-  bench_.pool().abandon();
-  submitted_ = next_ - 1;
-  chosen_.insert_or_assign(next_, GuidedStart{state, "its initial state"});
-  decided_ = std::max(decided_, next_);
-  return next();
-}
-
 std::optional<SampleRecord> LoopStream::repeat(const SampleRecord& record, bool goes_on) {
   if (recorded(record.sample, DrawPhase::kConfirm) == nullptr) {
     if (!goes_on) bench_.pool().abandon();

@@ -54,8 +54,6 @@ class LoopStream {
   /// Waits for the next sample. None when stopped. Reports kForeignJournalLine for one on record
   /// whose start is not the one that is chosen now.
   base::Result<std::optional<SampleRecord>> next();
-  /// The same from an initial state that is chosen for its own sake. What ran ahead is forgotten.
-  base::Result<std::optional<SampleRecord>> visit(std::int64_t state);
   /// Simulates the record's actions once more. None when stopped. Unless the stream `goes_on`, what
   /// ran ahead is forgotten.
   std::optional<SampleRecord> repeat(const SampleRecord& record, bool goes_on);

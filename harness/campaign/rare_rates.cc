@@ -68,8 +68,8 @@ class RareEstimator {
     law.name(trial->plan().sampler);
     rate.law = law.drawn().law;
     rate.left_out = law.drawn().left_out;
-    trial->starts().describe(rate.starts);
-    if (!rate.starts.all) {
+    trial->starts().describe(rate.starts, trial->next_sample() - 1);
+    if (!trial->starts().count()) {
       return sink_.error(codes::kTooManyInitialStates, base::SourceRange{scenario_.source, 0, 0},
                          kMostInitialStates);
     }

@@ -98,7 +98,7 @@ class Estimator {
       report_progress(trace.number, trial->next_sample() - 1);
     }
     trial->end();
-    trial->starts().describe(rates.starts);
+    trial->starts().describe(rates.starts, trial->next_sample() - 1);
     rates.law = law.result();
     rates.left_out = law.drawn().left_out;
     // Bounds that hold at any time do not depend on runs that were not made.
@@ -230,6 +230,11 @@ bool RatesResult::is_too_wide(const TraceRates& trace) const {
 }
 
 bool RatesResult::is_answered() const {
+  // Of initial states that cannot be drawn one says nothing.
+  if (std::any_of(traces.begin(), traces.end(),
+                  [](const TraceRates& trace) { return trace.starts.only_first; })) {
+    return false;
+  }
   if (fixed_runs) return true;
   return std::all_of(traces.begin(), traces.end(), [this](const TraceRates& trace) {
     const bool narrow = until_width > 0.0 && !is_too_wide(trace);

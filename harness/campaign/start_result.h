@@ -28,6 +28,8 @@ struct StartResult {
   /// Where not all are listed: candidates that the draw made, and those that are no initial state
   /// of the trace.
   std::int64_t candidates = 0, refused = 0;
+  /// Not all are listed and none could be drawn, so that the first stands for all.
+  bool only_first = false;
   std::vector<std::string> unrealisable;       // no start of the world has them, with the reason
   std::map<std::int64_t, StateCounts> states;  // those that were simulated, by number
 

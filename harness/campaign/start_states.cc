@@ -101,6 +101,14 @@ base::Status StartStates::list() {
   return base::Unit{};
 }
 
+/// Can a start of the world be in the state?
+bool StartStates::can_begin(const State& state) const {
+  base::DiagnosticSink unread;
+  return start_sampler(sources_.scenario, sources_.fluents.ground(),
+                       names_of(state, *trace_->symbols), unread)
+      .has_value();
+}
+
 void StartStates::leave_out_unrealisable() {
   if (states_.size() == 1) return;
   std::vector<State> kept;
@@ -206,7 +214,7 @@ std::set<std::string> StartStates::holds(std::int64_t state) const {
 /// sample that begins in it.
 base::Result<std::optional<std::int64_t>> StartStates::accepted(std::int64_t sample) {
   if (const auto known = drawn_.find(sample); known != drawn_.end()) {
-    return std::optional(known->second);
+    return std::optional(known->second.state);
   }
   if (parts_.empty()) return std::optional<std::int64_t>(1);  // nothing can be drawn
   const DrawKey key{sources_.campaign_seed, stream_key(trace_key_, kDrawnStream),
@@ -224,23 +232,19 @@ base::Result<std::optional<std::int64_t>> StartStates::accepted(std::int64_t sam
       state.insert(state.end(), value.begin(), value.end());
     }
     std::sort(state.begin(), state.end());
-    ++candidates_;
     auto number = numbers_.find(state);
     if (number == numbers_.end()) {
       auto found = sources_.feed.from(*trace_, fluents_, state);
       if (!found) return sources_.sink.already_reported();
       if (found->first == base::Known::kUndecided) return std::optional<std::int64_t>();
-      if (found->first == base::Known::kNo) {
-        ++refused_;
-        continue;
-      }
+      if (found->first == base::Known::kNo || !can_begin(state)) continue;
       const auto fresh = static_cast<std::int64_t>(numbers_.size()) + 1;
       auto start = prepare(*std::move(found->second), fresh);
       if (!start) return sources_.sink.already_reported();
       prepared_.emplace(fresh, *std::move(start));
       number = numbers_.emplace(std::move(state), fresh).first;
     }
-    drawn_.emplace(sample, number->second);
+    drawn_.emplace(sample, Drawn{number->second, attempt});
     return std::optional(number->second);
   }
   if (!is_first) return std::optional<std::int64_t>();
@@ -311,11 +315,16 @@ std::string StartStates::law_text() const {
                      all ? std::to_string(*all) : std::string("more than are listed"));
 }
 
-void StartStates::describe(StartResult& result) const {
+void StartStates::describe(StartResult& result, std::int64_t last) const {
   result.law = sources_.scenario.initial;
   result.unrealisable = unrealisable_;
-  result.candidates = candidates_;
-  result.refused = refused_;
+  result.candidates = result.refused = 0;
+  for (const auto& [sample, drawn] : drawn_) {
+    if (sample > last) break;
+    result.candidates += drawn.refused + 1;
+    result.refused += drawn.refused;
+  }
+  result.only_first = more_ && parts_.empty();
   result.all = count();
   if (result.all) *result.all += std::ssize(unrealisable_) + std::max<std::int64_t>(others_, 0);
   if (others_ < 0) result.all.reset();

@@ -66,8 +66,8 @@ class StartStates {
   std::vector<std::int64_t> others_than(const std::map<std::int64_t, StateCounts>& tried) const;
   /// How states are drawn, for a journal: "uniform of 6"; empty where there is one only.
   std::string law_text() const;
-  /// Fills in all but the counts.
-  void describe(StartResult& result) const;
+  /// Fills in all but the counts. Candidates are those of samples up to `last`.
+  void describe(StartResult& result, std::int64_t last) const;
   /// The true ones, by name, of the fluents that tell listed states apart.
   std::set<std::string> holds(std::int64_t state) const;
   /// The listed state whose share of the unit interval, in equal parts or by weights, has `u`.
@@ -82,6 +82,7 @@ class StartStates {
   base::Status list();
   State own() const;
   base::Result<PreparedStart> prepare(CampaignTrace trace, std::int64_t state);
+  bool can_begin(const State& state) const;
   void leave_out_unrealisable();
   std::int64_t permuted(std::int64_t position);
   base::Result<std::optional<std::int64_t>> accepted(std::int64_t sample);
@@ -93,10 +94,12 @@ class StartStates {
   std::vector<State> states_;                // by number - 1
   std::vector<double> weights_;              // none: each equally likely
   bool more_ = false;
-  std::vector<std::vector<State>> parts_;       // if so
-  std::map<State, std::int64_t> numbers_;       // likewise, of the drawn ones
-  std::map<std::int64_t, std::int64_t> drawn_;  // likewise, by sample
-  std::int64_t candidates_ = 0, refused_ = 0;   // likewise
+  std::vector<std::vector<State>> parts_;  // if so
+  std::map<State, std::int64_t> numbers_;  // likewise, of the drawn ones
+  struct Drawn {
+    std::int64_t state = 0, refused = 0;  // refused: candidates before it
+  };
+  std::map<std::int64_t, Drawn> drawn_;  // likewise, by sample
   std::vector<std::string> unrealisable_;
   std::int64_t others_ = 0;  // initial states that are not drawn, by `initial: first`
   std::map<std::int64_t, PreparedStart> prepared_;

@@ -35,7 +35,11 @@ void count_start(const StartStates& states, const TrialSample& sample, StartResu
 }
 
 DrawnStarts drawn_starts(const TraceResult& result, DrawnStarts drawn) {
-  drawn.initial = {result.starts.law, result.starts.all, result.starts.tried};
+  const auto& starts = result.starts;
+  const auto beyond = std::ssize(starts.unrealisable);
+  drawn.initial = {starts.only_first ? Initial::kFirst : starts.law, starts.all, starts.tried,
+                   beyond};
+  if (drawn.initial.all) *drawn.initial.all -= beyond;
   return drawn;
 }
 
@@ -47,6 +51,7 @@ std::string in_states_text(const CampaignResult& result) {
   std::int64_t tried = 0;
   std::optional<std::int64_t> all = 0;
   for (const auto& trace : result.traces) {
+    if (trace.starts.is_single()) continue;
     tried += trace.starts.tried;
     all = all && trace.starts.all ? std::optional(*all + *trace.starts.all) : std::nullopt;
   }
@@ -118,11 +123,10 @@ void add_start_caveats(const StartResult& starts, std::int64_t max_runs,
     }
     return;
   }
-  if (starts.candidates > 0 && starts.refused == starts.candidates) {
+  if (starts.only_first) {
     caveats.push_back(fmt::format(
-        "there are {} initial states, and none of {} candidates was one: only the first was "
-        "sampled",
-        states_text(starts), starts.candidates));
+        "there are {} initial states, and none could be drawn: only the first was sampled",
+        states_text(starts)));
   } else {
     caveats.push_back(
         fmt::format("there are {} initial states, too many to try each: {} were drawn",

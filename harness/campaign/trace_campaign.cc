@@ -41,7 +41,7 @@ class TraceCampaign {
     auto& result = outcome_.result;
     result.trace = trial_.plan().trace;
     result.start_region = trial_.start().dimensions;
-    trial_.starts().describe(result.starts);
+    trial_.starts().describe(result.starts, trial_.next_sample() - 1);
     law_.name(trial_.plan().sampler);
     result.left_out = law_.drawn().left_out;
     result.start_shares =
@@ -129,17 +129,23 @@ class TraceCampaign {
   /// Enough was simulated for the claim: the initial states that nothing was seen of are simulated
   /// once each, where the limit of runs has room for it. These runs count for no claim.
   base::Result<TraceEnd> visit_others() {
-    const auto left = trial_.starts().others_than(outcome_.result.starts.states);
-    if (std::ssize(left) > max_runs_ - tally_.runs()) return TraceEnd::kDecided;
-    for (const auto state : left) {
-      auto sample = trial_.visit(state);
-      if (!sample || !check_written(context_.journal, context_.options, context_.sink)) {
-        return context_.sink.already_reported();
+    auto& starts = outcome_.result.starts;
+    for (;;) {
+      const auto left = trial_.starts().others_than(starts.states);
+      const bool has_room = std::ssize(left) <= max_runs_ - tally_.runs() - starts.visits;
+      if (left.empty() || !has_room) return TraceEnd::kDecided;
+      const auto tried_before = starts.tried;
+      for (const auto state : left) {
+        auto sample = trial_.visit(state);
+        if (!sample || !check_written(context_.journal, context_.options, context_.sink)) {
+          return context_.sink.already_reported();
+        }
+        if (!*sample) return TraceEnd::kStopped;
+        if (const auto end = consume_visit(**std::move(sample))) return *end;
       }
-      if (!*sample) return TraceEnd::kStopped;
-      if (const auto end = consume_visit(**std::move(sample))) return *end;
+      // Those whose run was lost are tried again, as long as that helps.
+      if (starts.tried == tried_before) return TraceEnd::kDecided;
     }
-    return TraceEnd::kDecided;
   }
 
   /// Takes in a run that counts for no claim. Returns the end that it causes, if any.
@@ -233,7 +239,7 @@ class TraceCampaign {
   TraceEnd accept_discrepancy(TrialSample sample) {
     const auto again = trial_.repeat(sample.record);
     if (!again) return TraceEnd::kStopped;
-    if (!sample.record.searched) tally_.add_mismatch();
+    if (!sample.record.searched && !sample.record.visit) tally_.add_mismatch();
     const auto& judgement = sample.judgement;
     auto& record = sample.record;
     Discrepancy found;
@@ -278,7 +284,7 @@ class TraceCampaign {
     auto& result = outcome_.result;
     outcome_.end = end;
     result.is_decided = end == TraceEnd::kDecided;
-    trial_.starts().describe(result.starts);
+    trial_.starts().describe(result.starts, trial_.next_sample() - 1);
     const bool is_covered = result.starts.is_covered();
     result.verdict = end == TraceEnd::kDecided && is_covered ? CampaignVerdict::kNoDiscrepancy
                      : end == TraceEnd::kDiscrepancy         ? CampaignVerdict::kDiscrepancy
@@ -303,6 +309,10 @@ class TraceCampaign {
     if (result.search && result.search->found) {
       result.claim =
           "a search found a discrepancy; nothing is claimed about how often there is one";
+    } else if (outcome_.discrepancy && outcome_.discrepancy->record.visit) {
+      result.claim =
+          "a run from an initial state that no counted run began in gave a discrepancy; nothing is "
+          "claimed about how often there is one";
     } else {
       result.claim =
           claim(tally_, spec_, context_.scenario.comparison(), drawn_starts(result, law_.drawn()));

@@ -239,8 +239,10 @@ std::string single_state_text(const DrawnStates& states, double epsilon) {
 
 std::string starts_text(std::string_view region, const DrawnStarts& drawn, bool valid) {
   const std::string_view only_valid = valid ? "valid " : "";
-  const auto& [law, all, tried] = drawn.initial;
-  if (all == 1) return fmt::format("{}start states {}", only_valid, drawn_from(region, drawn));
+  const auto& [law, all, tried, unrealisable] = drawn.initial;
+  if (all == 1 && unrealisable == 0) {
+    return fmt::format("{}start states {}", only_valid, drawn_from(region, drawn));
+  }
   const auto number = all ? std::to_string(*all) : fmt::format("more than {}", kMostInitialStates);
   if (law == Initial::kFirst) {
     return fmt::format(
@@ -252,8 +254,8 @@ std::string starts_text(std::string_view region, const DrawnStarts& drawn, bool 
                         : fmt::format("{} tried", all ? fmt::format("{} of {}", tried, *all)
                                                       : std::to_string(tried));
   return fmt::format(
-      "{}starts (one of {}{} initial states that lead to its events, {} and {}; then {})",
-      only_valid, all ? "the " : "", number,
+      "{}starts (one of {}{} initial states that lead to its events{}, {} and {}; then {})",
+      only_valid, all ? "the " : "", number, unrealisable > 0 ? " and that a start can have" : "",
       law == Initial::kWeights ? "each as likely as its weight in `start_weights`"
                                : "each equally likely",
       each, drawn_from("its region", drawn));

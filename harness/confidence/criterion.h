@@ -108,6 +108,7 @@ struct DrawnStates {
   Initial law = Initial::kAll;
   std::optional<std::int64_t> all = 1;  // none: more than can be listed
   std::int64_t tried = 1;
+  std::int64_t unrealisable = 0;  // besides: those that no start of the world can be
 };
 
 /// The law by which starts are drawn, in words.

@@ -42,6 +42,25 @@ std::string SpendingRule::text() const {
                      *traces_, *traces_);
 }
 
+namespace {
+
+/// The starts of traces with different numbers of initial states.
+std::string starts_of_several(const DrawnStates& states, bool all_tried, bool rejected,
+                              const DrawnStarts& drawn) {
+  const auto* valid = rejected ? "valid " : "";
+  if (states.law == Initial::kFirst) {
+    return fmt::format("{}start states {}", valid,
+                       drawn_from("the start region of the first of its initial states", drawn));
+  }
+  return fmt::format(
+      "{}starts (one of the initial states that lead to its events, {}{}; then {})", valid,
+      states.law == Initial::kWeights ? "each as likely as its weight in `start_weights`"
+                                      : "each equally likely",
+      all_tried ? " and each tried" : ", not each tried", drawn_from("its region", drawn));
+}
+
+}  // namespace
+
 std::string family_claim(std::span<const FamilyMember> members, const CriterionSpec& spec,
                          Comparison comparison, const FamilyScope& scope) {
   std::int64_t clean = 0, lost = 0, runs = 0, claimed = 0;
@@ -53,6 +72,7 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
   const bool leaves_out = std::any_of(members.begin(), members.end(),
                                       [](const auto& member) { return member.is_discrepancy; });
   bool one_number = true, all_tried = true;
+  std::int64_t least_tried = 0;
   const DrawnStates* states = nullptr;
   for (const auto& member : members) {
     if (member.is_discrepancy) continue;
@@ -66,6 +86,7 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
     rejected = rejected || member.is_rejected;
     const auto& initial = member.drawn.initial;
     one_number = one_number && (states == nullptr || states->all == initial.all);
+    least_tried = states == nullptr ? initial.tried : std::min(least_tried, initial.tried);
     if (states == nullptr || initial.all != 1) states = &initial;
     all_tried = all_tried && initial.all && initial.tried >= *initial.all;
     const auto& bound = leaves_out ? member.shared : member.stated;
@@ -89,20 +110,11 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
                              : fmt::format(", {} counted as {}", base::counted(lost, "lost run"),
                                            base::agreed(lost, "a failure", "failures"));
   if (one_number && states != nullptr) drawn.initial = *states;
-  if (one_number && !all_tried && drawn.initial.all) {
-    drawn.initial.tried = std::min(drawn.initial.tried, *drawn.initial.all - 1);
-  }
+  if (one_number) drawn.initial.tried = least_tried;
   const double epsilon = as_planned ? spec.epsilon : worst.epsilon;
   const auto region = all == 1 ? "the start region" : "its start region";
-  const auto starts = one_number
-                          ? starts_text(region, drawn, rejected)
-                          : fmt::format(
-                                "{}starts (one of the initial states that lead to its events, {}; "
-                                "then {})",
-                                rejected ? "valid " : "",
-                                all_tried ? "each equally likely and each tried"
-                                          : "each equally likely, not each tried",
-                                drawn_from("its region", drawn));
+  const auto starts = one_number ? starts_text(region, drawn, rejected)
+                                 : starts_of_several(*states, all_tried, rejected, drawn);
   auto text = fmt::format(
       "with {} confidence, {}fewer than {} of {} give a discrepancy {}{} ({} clean {} of {}{}){}",
       level_text(worst.confidence_level), of_traces, percent_up(epsilon), starts,

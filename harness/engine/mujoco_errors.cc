@@ -1,9 +1,11 @@
 #include "harness/engine/mujoco_errors.h"
 
+#include <unistd.h>
+
 #include <array>
 #include <csetjmp>
-#include <cstdio>
 #include <cstdlib>
+#include <string_view>
 
 #include "harness/engine/mujoco_engine.h"
 
@@ -16,11 +18,17 @@ thread_local std::array<char, 1024> t_error;
 }  // namespace
 
 void leave_engine(const char* text) {
+  const std::string_view words(text);
   if (t_back == nullptr) {
-    std::fprintf(stderr, "parallax: MuJoCo failed: %s\n", text);
+    // No exception may leave the C frames, and no message has anybody to take it.
+    for (const auto part :
+         {std::string_view("parallax: MuJoCo failed: "), words, std::string_view("\n")}) {
+      if (::write(STDERR_FILENO, part.data(), part.size()) < 0) break;
+    }
     std::abort();
   }
-  std::snprintf(t_error.data(), t_error.size(), "%s", text);
+  const auto length = words.copy(t_error.data(), t_error.size() - 1);
+  t_error[length] = '\0';
   std::longjmp(*t_back, 1);
 }
 

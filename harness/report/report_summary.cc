@@ -126,7 +126,7 @@ class Summary {
     }
     if (first.loop) return "there were fewer runs than the criterion asks for";
     return fmt::format(
-        "{} of {} had fewer runs than the criterion asks for", open,
+        "{} of {} had fewer runs than the criterion asks for", undecided,
         base::counted(static_cast<std::int64_t>(result_.traces.size()), "trace", "traces"));
   }
 

@@ -153,7 +153,7 @@ TEST_CASE("calibrate: the smaller table, through the protocol, and what it refus
       run({"--loops", "200", "--protocol-loops", "3", "--criterion", "clean-runs", "--criterion",
            "anytime", "--simulator", "noisy", "--simulator", "two-traces"});
   CHECK(has(out, "| simulator | may be | `clean-runs` | `anytime` |"));
-  CHECK(has(out, "| two traces, number not known | 10 % |"));
+  CHECK(has(out, "| two traces, all-traces | 10 % |"));
   const std::vector<std::string> crash = {"--loops",     "0",           "--protocol-loops",
                                           "2",           "--criterion", "clean-runs",
                                           "--simulator", "crash-first", "--json"};

@@ -255,7 +255,8 @@ Command rates_command() {
       "rates.csv\n"
       "  parallax rates scenarios/kitchen/plan2.yaml --mean duration --mean goal\n"
       "  parallax rates scenarios/two_regions/edge.yaml --method importance --runs 1000\n"
-      "Sample N starts as simulation N of `parallax run` with the same seed does.\n"
+      "Sample N starts as simulation N of `parallax run` with the same seed does, where a trace "
+      "has one initial state.\n"
       "Exit codes: 0 estimated, 1 no trace, 4 stopped before all runs were made, or "
       "--runs did not resolve what was asked.");
   command.option("scenario", options->scenario, "Scenario file (YAML)").required().file({"yaml"});

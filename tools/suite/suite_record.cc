@@ -92,7 +92,8 @@ void append_case(std::string& out, const SuiteCase& one, const CaseResult& resul
     const auto note = result.flaky() ? fmt::format("flaky: passed in attempt {}", result.attempts)
                                      : result.reused;
     out += fmt::format("      <system-out>{}</system-out>\n", xml_escaped(note));
-  } else if (!result.where.empty()) {
+  }
+  if (!result.where.empty()) {
     out += fmt::format("      <system-out>looked {}</system-out>\n", xml_escaped(result.where));
   }
   if (!result.messages.empty()) {

@@ -78,6 +78,7 @@ std::string narrow_passes(const SuiteRecord& record) {
   for (std::size_t i = 0; i < record.cases().size(); ++i) {
     const auto& result = record.results()[i];
     if (result.outcome != Outcome::kPassed || result.where.empty()) continue;
+    if (result.verdict == "discrepancy") continue;  // which ended the run
     out += fmt::format("\n{} looked {} only.\n", base::markdown_text(record.cases()[i].name()),
                        result.where);
   }
