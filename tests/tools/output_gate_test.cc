@@ -424,6 +424,7 @@ TEST_CASE("who writes to descriptors and files by other ways than the gate is kn
         "harness/calibration/synthetic_simulator.cc\n"
         "harness/campaign/journal.cc\n"
         "harness/conformance/adapter_recording.cc\n"
+        "harness/engine/mujoco_errors.cc\n"
         "harness/import/limited_child.cc\n"
         "harness/recording/recording_file.cc\n"
         "harness/simulator/process_simulator.cc\n"

@@ -163,9 +163,14 @@ TEST_CASE("too many states are drawn from parts, uniformly over those that the m
   CHECK(chi_square(counts, std::vector<double>(6, 1.0 / 6), kDraws) < kMost5);
   for (int i = 1; i <= 100; ++i) CHECK(starts.at(i) == starts.at(i, true));
   StartResult result;
-  states.describe(result);
+  states.describe(result, kDraws);
   CHECK(result.all == std::nullopt);
+  CHECK_FALSE(result.only_first);
   CHECK(result.candidates - result.refused == kDraws);
+  // Samples that ran ahead do not count.
+  StartResult half;
+  states.describe(half, kDraws / 2);
+  CHECK(half.candidates - half.refused == kDraws / 2);
   // A third of the candidates has both in one cell.
   const double share = static_cast<double>(result.refused) / static_cast<double>(result.candidates);
   CHECK(share == doctest::Approx(1.0 / 3).epsilon(0.05));
@@ -183,9 +188,8 @@ TEST_CASE(
   CHECK(starts.at(1) == 1);
   CHECK(starts.at(2) == 1);
   StartResult result;
-  states.describe(result);
-  CHECK(result.candidates == 1000);
-  CHECK(result.refused == 1000);
+  states.describe(result, 2);
+  CHECK(result.only_first);
   CHECK_FALSE(result.is_covered());
 }
 
@@ -213,7 +217,7 @@ TEST_CASE("a state that no start of the world can have is left out, with the rea
   REQUIRE(made.has_value());
   CHECK(made->count() == 3);
   StartResult result;
-  made->describe(result);
+  made->describe(result, 1);
   CHECK(result.all == 4);
   REQUIRE(result.unrealisable.size() == 1);
   CHECK(result.unrealisable[0].starts_with("BoxIn(s1) BoxIn(s2): "));
@@ -229,7 +233,7 @@ TEST_CASE("`initial: first` simulates the trace's own state and says of how many
   CHECK(starts.at(1) == 0);
   CHECK(states.law_text().empty());
   StartResult result;
-  states.describe(result);
+  states.describe(result, 1);
   CHECK(result.all == 6);
   CHECK(result.is_covered());
 }

@@ -208,6 +208,7 @@ TEST_CASE("what a precaution takes to fail is asked of no later round") {
   cli.write("robot.bind",
             "action pulling () -> Pull()  ok: Open() @t+1 else manipulation-goal-not-reached\n"
             "action pushing () -> Push()  ok: !Open() @t+1 else manipulation-goal-not-reached\n");
+  cli.write("drawer.yaml", cli.read("drawer.yaml") + "initial: first\n");
   json_of(cli, {"run", "drawer.yaml", "--out", "out"}, 1);
   json_of(cli, {"explain", "out"}, 1);  // from the same start it goes well and fails
   const auto report = json_of(cli, {"repair", "out", "--loop", "--out", "fixed"}, 1);
