@@ -230,7 +230,7 @@ bool RatesResult::is_too_wide(const TraceRates& trace) const {
 }
 
 bool RatesResult::is_answered() const {
-  // Of initial states that cannot be drawn one says nothing.
+  // Where initial states cannot be drawn, the one that was sampled says nothing of the others.
   if (std::any_of(traces.begin(), traces.end(),
                   [](const TraceRates& trace) { return trace.starts.only_first; })) {
     return false;
