@@ -28,7 +28,7 @@ std::optional<double> margin_at(const State& margins, std::string_view name) {
   return number != nullptr && std::isfinite(*number) ? std::optional(*number) : std::nullopt;
 }
 
-/// What a run reports under this name.
+/// The value that a run reports under this name.
 std::optional<double> reported(const SampleRow& row, std::string_view name) {
   if (name == "duration") return row.sim_time_s;
   std::optional<double> out;

@@ -145,7 +145,7 @@ base::Result<StartCube> StartCube::make(const StartStates& starts, const Scenari
     out.dimensions_ = out.cubes_.front().dimensions();
     return out;
   }
-  // Where there are more states than are listed only the first is searched.
+  // A trace with too many states to list is searched from its first state only.
   for (std::int64_t state = 1; state <= starts.count().value_or(1); ++state) {
     const auto sampler = start_sampler(scenario, fluents.ground(), starts.holds(state), sink);
     if (!sampler) return sink.already_reported();

@@ -10,7 +10,7 @@
 
 namespace parallax::harness {
 
-/// What the simulations from one initial state showed.
+/// The results of the simulations from one initial state.
 struct StateCounts {
   std::string text;  // what tells it from the others: "TrolleyAt(onWay)"
   std::int64_t clean = 0, lost = 0, discrepancies = 0;
@@ -25,8 +25,8 @@ struct StartResult {
   std::optional<std::int64_t> all = 1;
   std::int64_t tried = 0;   // seen to the end of a simulation at least once
   std::int64_t visits = 0;  // simulations for their sake, which count for no claim
-  /// Where not all are listed: candidates that the draw made, and those that are no initial state
-  /// of the trace.
+  /// Used only if the states are not all listed: the candidates that were drawn, and how many of
+  /// them were no initial state of the trace.
   std::int64_t candidates = 0, refused = 0;
   /// Not all are listed and none could be drawn, so that the first stands for all.
   bool only_first = false;

@@ -6,8 +6,9 @@
 // states' chances, at most the n-th power of their mean (Maclaurin's inequality). Once a run was
 // lost, draws are independent, as the bound for runs with failures asks for (docs/statistics.md).
 //
-// Where there are more, a state is drawn part by part from what each group of fluents can be by
-// itself, until the model has an execution from it: uniform over all initial states of the trace.
+// A trace with more states has them drawn: each group of fluents gets one of the values that it can
+// have by itself, until the model has an execution from the whole. The draws are uniform over all
+// initial states of the trace.
 //
 // Cost: one solver call a state to list them, and a few for the prediction of each one simulated.
 

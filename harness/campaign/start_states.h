@@ -16,7 +16,7 @@
 
 namespace parallax::harness {
 
-/// Where the initial states of a trace come from; all of it outlives a StartStates.
+/// The sources of a trace's initial states. All of them outlive the StartStates.
 struct StartSources {
   const Scenario& scenario;
   const ModelFluents& fluents;

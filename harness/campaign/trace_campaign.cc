@@ -36,7 +36,7 @@ class TraceCampaign {
     criterion_ = make_criterion(spec_);
     max_runs_ = run_limit(context_.scenario).max_runs;
     if (context_.family.is_settled()) (void)share_error();
-    // What the bound of Clopper and Pearson says of failures supposes independent draws.
+    // With failures, the bound of Clopper and Pearson holds for independent draws only.
     if (criterion_->kind() == CriterionKind::kClopperPearson) trial_.draw_independently();
     auto& result = outcome_.result;
     result.trace = trial_.plan().trace;

@@ -55,7 +55,7 @@ PaperVerdict paper_rule(const RegressionInput& input, const PaperRuleSpec& spec,
 /// Refuses besides when a run ended in another state that the model admits: the rule supposes one.
 PaperVerdict paper_rule(const Tally& tally, const PaperRuleSpec& spec, double confidence_level);
 
-/// What the rule came to, with all that it takes to work it out by hand.
+/// The result of the rule, with all figures that are needed to check it by hand.
 struct PaperFigures {
   std::vector<std::string> x_names;  // (n) initial parameters, in the order of the coefficients
   std::vector<Interval> x_range;     // (n)

@@ -121,7 +121,7 @@ OrderedJson json_of(const SearchResult& search) {
   return out;
 }
 
-/// What the paper's rule came to, after the last run.
+/// The figures of the paper's rule after the last run.
 void add_paper_figures(const PaperFigures& figures, OrderedJson& out) {
   const auto& verdict = figures.verdict;
   const auto ends = [](const Interval& of) { return OrderedJson{of.lower, of.upper}; };

@@ -181,7 +181,7 @@ void UnrealisableStarts::report() const {
   std::size_t shown = 0;
   std::set<std::set<Value>> told;
   for (const auto& found : found_) {
-    // Where the fluent has one value in every start, that is the reason, whatever else there is.
+    // A fluent with one value in every start is explained by that alone.
     bool is_explained = false;
     for (const auto& value : found.values) {
       const bool other = realised_.contains({value.fluent, !value.holds});

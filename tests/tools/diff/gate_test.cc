@@ -334,7 +334,7 @@ TEST_CASE("runs of equal starts are compared in pairs") {
   CHECK(holds(worse["rates.worse witness"], "99 with equal starts, 6 fail anew and 0 no longer"));
   made("other_starts.json", 36, 100, 0);
   CHECK(gate.hold(rules, "thirty.json", "other_starts.json")["rates.worse"] == "not decidable");
-  // What was lost may have failed before.
+  // The lost runs may all have been failures.
   made("thirty.json", 30, 0, 4);
   CHECK(gate.hold(rules, "thirty.json", "six_more.json")["rates.worse"] == "not decidable");
   // Runs that contradict the counts are no rates.
