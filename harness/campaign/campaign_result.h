@@ -33,6 +33,7 @@ struct DivergingFluent {
   std::int64_t timepoint = 0;
   bool predicted = false;
   bool observed = false;
+  std::string measured = {};  // "robot.x = 0.313 m, 87 mm below [0.4, 0.8]"; may be empty
 };
 
 /// The reason why a simulation left its trace: the action that failed there, or else the fluents

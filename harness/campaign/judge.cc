@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "compiler/base/contract.h"
+#include "harness/region/measured.h"
 
 namespace parallax::harness {
 namespace {
@@ -86,7 +87,8 @@ Judgement judge(const StateMapping& mapping, const ModelFluents& fluents,
       state.holds[fluents.id(i)] = observed;
       state.in_no_state = state.in_no_state || neither;
       if (observed != predicted) {
-        differing.push_back({fluent.text, static_cast<std::int64_t>(t), predicted, observed});
+        differing.push_back({fluent.text, static_cast<std::int64_t>(t), predicted, observed,
+                             measured_text(mapping, fluent, observations[t])});
       }
     }
     for (const auto& text : mapping.outside(fluents.ground(), observations[t])) {

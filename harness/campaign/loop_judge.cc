@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "harness/region/measured.h"
+
 namespace parallax::harness {
 namespace {
 
@@ -92,8 +94,10 @@ class PathJudge {
   }
 
   void note(compiler::FluentId id, std::size_t length, bool observed) {
-    out_.fluents.push_back(
-        {feed_.symbols()->name(id), static_cast<std::int64_t>(length), !observed, observed});
+    out_.fluents.push_back({feed_.symbols()->name(id), static_cast<std::int64_t>(length), !observed,
+                            observed,
+                            measured_text(mapping_, ground_fluent(feed_.symbols()->name(id)),
+                                          record_.observations[length])});
   }
 
   void note_fluents(std::size_t length, std::size_t outcomes, std::vector<Fluents> before) {

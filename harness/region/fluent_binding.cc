@@ -117,8 +117,9 @@ std::optional<double> margin_of(const InsideBinding& kind, const GroundFluent& f
                                 const State& state, const RegionMap& regions) {
   const Region* region = kind.region_of(fluent, regions);
   const std::string name = with_arguments(kind.body, fluent);
-  Point point{};
-  if (region == nullptr || !find_body(*region, name, state, nullptr, point)) return std::nullopt;
+  const auto found = kind.point_of(fluent, state, regions);
+  if (!found) return std::nullopt;
+  const Point& point = *found;
   if (!kind.flags_allow(fluent, state, nullptr)) return std::nullopt;
   double least = std::numeric_limits<double>::infinity();
   for (const RegionAxis axis : kRegionAxes) {
@@ -378,6 +379,17 @@ Interval BorderBinding::side(bool wanted) const {
 const Region* InsideBinding::region_of(const GroundFluent& fluent, const RegionMap& regions) const {
   return region_argument < fluent.arguments.size() ? regions.find(fluent.arguments[region_argument])
                                                    : nullptr;
+}
+
+std::optional<Point> InsideBinding::point_of(const GroundFluent& fluent, const State& state,
+                                             const RegionMap& regions) const {
+  const Region* region = region_of(fluent, regions);
+  Point point{};
+  if (region == nullptr ||
+      !find_body(*region, with_arguments(body, fluent), state, nullptr, point)) {
+    return std::nullopt;
+  }
+  return point;
 }
 
 bool InsideBinding::flags_allow(const GroundFluent& fluent, const State& state,

@@ -209,9 +209,23 @@ class Account {
     rows[1].push_back(when());
     if (shown_later > 0) rows[1 + shown].push_back("and so at the end");
     out += table(rows, 4);
+    measured(out, cause, shown);
     const auto all = cause.size() + later.size();
     if (all > shown + shown_later) {
       out += fmt::format("    and {} more\n", all - shown - shown_later);
+    }
+  }
+
+  /// Writes what the first `shown` fluents were read from, a line each.
+  static void measured(std::string& out, const std::vector<DivergingFluent>& fluents,
+                       std::size_t shown) {
+    std::string label = "  measured";
+    for (std::size_t i = 0; i < shown; ++i) {
+      if (fluents[i].measured.empty()) continue;
+      label.resize(kSummaryColumn, ' ');
+      out += wrapped(label, fmt::format("{}: {}", fluents[i].fluent, fluents[i].measured),
+                     kSummaryColumn);
+      label.clear();
     }
   }
 

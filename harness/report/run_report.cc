@@ -83,7 +83,8 @@ std::vector<DivergingFluent> reported_fluents(const ReportJson& object, const ch
   std::vector<DivergingFluent> out;
   for (const auto& entry : reported_list(object, name)) {
     out.push_back({reported_text(entry, "fluent"), reported_whole(entry, "timepoint"),
-                   reported<bool>(entry, "predicted"), reported<bool>(entry, "observed")});
+                   reported<bool>(entry, "predicted"), reported<bool>(entry, "observed"),
+                   reported_text(entry, "measured")});
   }
   return out;
 }

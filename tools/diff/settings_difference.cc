@@ -190,8 +190,9 @@ std::string settings_text(const std::vector<SettingChange>& changes, bool stat) 
   for (const auto& [effects, group] : groups) {
     std::string numbers;
     for (const auto& [sign, word] : {std::pair{'-', "removed"}, {'+', "added"}, {'~', "changed"}}) {
-      const auto count = std::count_if(group.begin(), group.end(),
-                                       [&, sign = sign](const auto* one) { return mark(*one) == sign; });
+      const auto count =
+          std::count_if(group.begin(), group.end(),
+                        [&, sign = sign](const auto* one) { return mark(*one) == sign; });
       if (count != 0) numbers += fmt::format("{}{} {}", numbers.empty() ? "" : ", ", count, word);
     }
     out += fmt::format("{}: {}\n", heading(effects), numbers);

@@ -12,10 +12,15 @@ std::vector<double> ticks(double low, double high, int count) {
   if (!(width > 0.0) || !std::isfinite(width)) return out;
   const double rough = width / count;
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  const auto ticks_in = [&](double step) {
+    return std::floor(high / step + 1e-9) - std::ceil(low / step) + 1.0;
+  };
+  // The finest step that is not below the rough one, or the one before it where that gives a single
+  // tick.
   double step = power;
-  for (const double factor : {1.0, 2.0, 5.0, 10.0}) {
+  for (const double factor : {2.0, 5.0, 10.0}) {
+    if (step >= rough || ticks_in(factor * power) < 2.0) break;
     step = factor * power;
-    if (step >= rough) break;
   }
   for (double i = std::ceil(low / step); i * step <= high + 1e-9 * step && out.size() < 50; ++i) {
     out.push_back(std::abs(i * step) < 1e-12 ? 0.0 : i * step);
@@ -30,7 +35,8 @@ std::string px(double value) {
 }
 
 void DotPath::add(double x, double y) {
-  if (std::isfinite(x) && std::isfinite(y)) d_ += 'M' + px(x) + ' ' + px(y) + "h0";
+  // Not of length zero: printed as PDF, square caps of such a line vanish.
+  if (std::isfinite(x) && std::isfinite(y)) d_ += 'M' + px(x) + ' ' + px(y) + "h.01";
 }
 
 std::string DotPath::element(std::string_view classes) const {

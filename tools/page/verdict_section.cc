@@ -85,9 +85,10 @@ std::string differences_table(const harness::Discrepancy& found) {
   const auto row = [](const harness::DivergingFluent& one, bool follows) {
     return fmt::format(
         "<tr{}><th scope=\"row\">{}{}</th><td data-label=\"Predicted\">{}</td>"
-        "<td data-label=\"Observed\">{}</td><td class=\"num\" data-label=\"At\">{}</td></tr>\n",
+        "<td data-label=\"Observed\">{}</td><td class=\"num\" data-label=\"At\">{}</td>"
+        "<td data-label=\"Measured\">{}</td></tr>\n",
         follows ? " class=\"follows\"" : "", follows ? "then " : "", html_short(one.fluent),
-        one.predicted, one.observed, one.timepoint);
+        one.predicted, one.observed, one.timepoint, html_short(one.measured));
   };
   std::string rows;
   for (const auto& one : found.first) rows += row(one, false);
@@ -99,7 +100,8 @@ std::string differences_table(const harness::Discrepancy& found) {
          "<table class=\"flow\"><caption>What differs; consequences below the first "
          "difference</caption>"
          "<thead><tr><th scope=\"col\">Fluent</th><th scope=\"col\">Predicted</th>"
-         "<th scope=\"col\">Observed</th><th scope=\"col\">At</th></tr></thead><tbody>\n" +
+         "<th scope=\"col\">Observed</th><th scope=\"col\">At</th>"
+         "<th scope=\"col\">Measured</th></tr></thead><tbody>\n" +
          rows + "</tbody></table></div>\n";
 }
 
@@ -235,7 +237,7 @@ std::vector<std::string> claims_of(const PageData& page) {
   for (const int wanted : {0, 1, 2}) {
     for (const auto& trace : page.traces) {
       if (trace.claim.empty() || rank(trace) != wanted) continue;
-      out.push_back("<b>" + stream_name(page, trace) + ":</b> " + html_short(trace.claim) + '.');
+      out.push_back("<b>" + stream_name(page, trace) + ":</b> " + html_words(trace.claim) + '.');
     }
   }
   return out;
@@ -373,7 +375,7 @@ std::string traces_section(const PageData& page, const SourceLinks& links) {
       out +=
           "<p class=\"caveat\">Lost: " + html_words(harness::loss_words(trace.losses)) + ".</p>\n";
     }
-    if (!trace.claim.empty()) out += "<p class=\"claim\">" + html_short(trace.claim) + ".</p>\n";
+    if (!trace.claim.empty()) out += "<p class=\"claim\">" + html_words(trace.claim) + ".</p>\n";
     for (const auto& caveat : trace.caveats) {
       out += "<p class=\"caveat\">" + html_short(caveat) + ".</p>\n";
     }

@@ -1,6 +1,8 @@
 // Pages in headless Chromium: no message on the console, no request to a network, use with keyboard
 // and mouse, contrast; with axe-core where `tools/setup --browser` got it.
 
+#include "tests/tools/page/browser.h"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -28,21 +30,6 @@ std::string content_of(const fs::path& path) {
   std::ostringstream out;
   out << in.rdbuf();
   return out.str();
-}
-
-/// Empty where there is none.
-std::string browser() {
-  for (const auto* path : {"/usr/bin/chromium", "/usr/bin/chromium-browser"}) {
-    if (fs::exists(path)) return path;
-  }
-  return {};
-}
-
-/// False, having said so, where there is no browser.
-bool has_browser() {
-  if (!browser().empty()) return true;
-  std::puts("SKIPPED: no Chromium; `tools/setup --browser` installs it");
-  return false;
 }
 
 std::string decoded(const std::string& base64) {
