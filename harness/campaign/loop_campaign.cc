@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -17,6 +16,7 @@
 #include "harness/campaign/repetition.h"
 #include "harness/campaign/run_setup.h"
 #include "harness/campaign/start_check.h"
+#include "harness/campaign/start_words.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/item_bounds.h"
 
@@ -119,18 +119,10 @@ class LoopCampaign {
   }
 
   /// Counts an execution by its initial state.
-  void count_start(const SampleRecord& record, bool is_lost, bool is_clean) {
-    if (stream_.starts.is_single()) {
-      stream_.starts.tried = 1;
-      return;
-    }
-    auto& counts = stream_.starts.states[record.path->start];
-    if (counts.text.empty()) {
-      counts.text = fmt::format("{}", fmt::join(samples_.start_of(record).state->holds(0), " "));
-    }
-    const bool was_seen = counts.seen() > 0;
-    ++(is_lost ? counts.lost : is_clean ? counts.clean : counts.discrepancies);
-    if (!was_seen && counts.seen() > 0) ++stream_.starts.tried;
+  void count_by_start(const SampleRecord& record, StartOutcome outcome) {
+    const auto text = [this](std::int64_t state) { return samples_.text(state); };
+    const bool is_single = stream_.starts.is_single();
+    count_start(is_single ? 0 : record.path->start, outcome, text, stream_.starts);
   }
 
   /// False when stopped.
@@ -174,7 +166,7 @@ class LoopCampaign {
       return report_rejected(scenario_, *start.state, record.rejected, record.sample, record.reason,
                              sink_);
     }
-    if (record.status == SampleStatus::kRefused) return report_refused(record);
+    if (record.status == SampleStatus::kRefused) return samples_.report_refused(record);
     if (record.status == SampleStatus::kLost) return lost(std::move(record));
     const auto& mapping = *scenario_.mapping;
     const auto first = judge(mapping, bench_.fluents(), *start.state, {record.observations[0]});
@@ -194,7 +186,8 @@ class LoopCampaign {
     }
     bench_.end_row_of_losses();
     count(record);
-    count_start(record, false, judgement.admitted == base::Known::kYes);
+    count_by_start(record, judgement.admitted == base::Known::kYes ? StartOutcome::kClean
+                                                                    : StartOutcome::kDiscrepancy);
     if (judgement.admitted == base::Known::kNo) return accept(std::move(record), judgement);
     const auto unfinished = why_unfinished(*record.path, scenario_);
     using Kept = RunRecorder::Verdict;
@@ -210,22 +203,10 @@ class LoopCampaign {
       if (loop.unfinished++ == 0) loop.why_unfinished = unfinished;
     }
     tell(record, unfinished.empty() ? "clean" : "unfinished");
-    if (unfinished.empty() && !clean_) clean_ = clean_sample(record);
+    if (unfinished.empty() && !clean_) clean_ = samples_.clean_sample(record);
     consumed_.push_back(std::move(record));
     if (unfinished.empty() || options_.keep_going) return std::optional<End>();
     return std::optional(End::kUnfinished);
-  }
-
-  CleanSample clean_sample(const SampleRecord& record) {
-    const auto is_clean = [this](const SampleRecord& again) -> std::optional<bool> {
-      const auto judgement =
-          judge_path(*scenario_.mapping, bench_.fluents(), feed_, again, scenario_.comparison());
-      if (!judgement.missing.empty()) return false;
-      if (judgement.admitted == base::Known::kUndecided || bench_.stopped()) return std::nullopt;
-      return judgement.admitted == base::Known::kYes &&
-             why_unfinished(*again.path, scenario_).empty();
-    };
-    return {record, std::make_shared<const RepeatedExecution>(samples_.samples()), is_clean};
   }
 
   /// Does the simulator do what it did at first? Only where something is claimed of clean runs.
@@ -234,25 +215,6 @@ class LoopCampaign {
     is_repeating_ = true;
     sampled_ = {0.0, bench_.simulated_s(), bench_.runs_made()};
     result_.repetition = repeat_clean(*clean_, bench_);
-  }
-
-  base::DiagnosticBuilder report_refused(const SampleRecord& record) {
-    const auto& path = *record.path;
-    if (path.end == PathEnd::kUnboundReason || path.end == PathEnd::kUnnamedObject) {
-      return feed_.report_end(path, record.reason);
-    }
-    const auto in = fmt::format("in simulation {}.{}", record.trace, record.sample);
-    const auto code = codes::kSimulatorRefused;
-    if (record.observations.empty() || path.steps.empty()) {
-      return sink_.error(code, scenario_.sampling_source, fmt::format("refused the start {}", in),
-                         record.reason);
-    }
-    const auto event = ground_fluent(path.steps.back().event);
-    const auto action =
-        std::find_if(scenario_.actions.begin(), scenario_.actions.end(),
-                     [&](const auto& binding) { return binding.event == event.symbol; });
-    return sink_.error(code, action->source,
-                       fmt::format("refused the action of `{}` {}", event.text, in), record.reason);
   }
 
   void tell(const SampleRecord& record, const char* outcome,
@@ -295,7 +257,7 @@ class LoopCampaign {
       (void)rated_.next();  // it has its place, but what it would have shown is not known
     }
     count_loss(record, stream_);
-    count_start(record, true, false);
+    count_by_start(record, StartOutcome::kLost);
     tell(record, "lost");
     lost_too_often_ = bench_.lost_too_often(record, samples_.on_record(record));
     consumed_.push_back(std::move(record));
@@ -336,18 +298,7 @@ class LoopCampaign {
       causes.push_back({judgement.cause.text, rated, 0.0, 0.0, 0.0, record.sample,
                         judgement.cause.reason, record.initial});
     }
-    Discrepancy found;
-    found.kind = judgement.kind;
-    found.trace = record.trace;
-    found.sample = record.sample;
-    found.seed = record.seed;
-    found.first_divergence = judgement.divergence.event + 1;
-    found.first = judgement.fluents;
-    if (judgement.kind == DiscrepancyKind::kLasting) found.fluents = judgement.fluents;
-    found.cause = judgement.cause;
-    found.confirmation = confirmation_of(record, *again);
-    found.path = judgement.divergence;
-    found.record = record;
+    auto found = path_discrepancy(record, judgement, *again);
     found.end =
         mapped_part(*scenario_.mapping, bench_.fluents().ground(), record.observations.back());
     consumed_.push_back(std::move(record));
@@ -382,44 +333,20 @@ class LoopCampaign {
   }
 
   void fill_stream() {
-    const auto& criterion = scenario_.criterion;
     auto& stream = stream_;
     stream.law = law_.result();
     stream.left_out = law_.drawn().left_out;
-    const bool decided =
+    stream.is_decided =
         criterion_->decide(tally_).stop && stream.loop->unfinished == 0 && is_covered();
-    stream.is_decided = decided;
     stream.verdict = !result_.discrepancies.empty() ? CampaignVerdict::kDiscrepancy
-                     : decided                      ? CampaignVerdict::kNoDiscrepancy
+                     : stream.is_decided            ? CampaignVerdict::kNoDiscrepancy
                                                     : CampaignVerdict::kInconclusive;
-    const auto guided = stream.loop->guided.value_or(0);
-    stream.simulations = executions() + guided;
-    const auto bound = certified_bound(tally_, criterion.confidence_level);
-    stream.certified_level = bound.confidence_level;
-    stream.certified_epsilon = bound.epsilon;
-    stream.claim =
-        loop_claim(tally_, criterion, scenario_.comparison(),
-                   {stream.loop->initial_states, stream.loop->has_weights, law_.drawn()});
-    stream.caveats = caveats(tally_, criterion, std::nullopt);
+    stream.simulations = executions() + stream.loop->guided.value_or(0);
+    claim_executions(scenario_, tally_, law_.drawn(), stream);
     if (feed_.plan().performs().empty()) {
       stream.caveats.emplace_back("the plan performs nothing: initial states alone were compared");
     }
-    if (stream.loop->unfinished > 0) {
-      stream.certified_epsilon = 1.0;
-      stream.claim = "nothing is claimed: an execution did not end";
-      stream.caveats.push_back(stream.loop->why_unfinished);
-    }
-    const auto& starts = stream.starts;
-    if (decided && starts.tried < *starts.all) {
-      stream.caveats.push_back(fmt::format("{} of {} initial states began no execution",
-                                           *starts.all - starts.tried, *starts.all));
-    }
-    if (guided > 0) {
-      stream.caveats.push_back(fmt::format(
-          "{} of the executions began in states that were chosen; the claim is about the others "
-          "alone, whose starts were drawn",
-          guided));
-    }
+    add_loop_caveats(stream);
     rate_causes(rated_, lost_too_often_, result_.interrupted, stream);
     const auto* found = result_.discrepancies.empty() ? nullptr : &result_.discrepancies.front();
     add_loss_caveats(stream);

@@ -31,6 +31,37 @@ void count_path(const SampleRecord& record, LoopResult& loop) {
   ++(same == paths.end() ? paths.emplace_back(std::move(path)) : *same).runs;
 }
 
+void claim_executions(const Scenario& scenario, const Tally& tally, DrawnStarts drawn,
+                      TraceResult& stream) {
+  const auto& criterion = scenario.criterion;
+  const auto& loop = *stream.loop;
+  const auto bound = certified_bound(tally, criterion.confidence_level);
+  stream.certified_level = bound.confidence_level;
+  stream.certified_epsilon = bound.epsilon;
+  stream.claim = loop_claim(tally, criterion, scenario.comparison(),
+                            {loop.initial_states, loop.has_weights, std::move(drawn)});
+  stream.caveats = caveats(tally, criterion, std::nullopt);
+  if (loop.unfinished == 0) return;
+  stream.certified_epsilon = 1.0;
+  stream.claim = "nothing is claimed: an execution did not end";
+}
+
+void add_loop_caveats(TraceResult& stream) {
+  const auto& loop = *stream.loop;
+  const auto& starts = stream.starts;
+  if (loop.unfinished > 0) stream.caveats.push_back(loop.why_unfinished);
+  if (stream.is_decided && starts.tried < *starts.all) {
+    stream.caveats.push_back(fmt::format("{} of {} initial states began no execution",
+                                         *starts.all - starts.tried, *starts.all));
+  }
+  if (const auto guided = loop.guided.value_or(0); guided > 0) {
+    stream.caveats.push_back(
+        fmt::format("{} of the executions began in states that were chosen; the claim is about the "
+                    "others alone, whose starts were drawn",
+                    guided));
+  }
+}
+
 void rate_causes(const FixedCount& counted, bool lost_too_often, bool interrupted,
                  TraceResult& stream) {
   auto& loop = *stream.loop;

@@ -4,6 +4,7 @@
 
 #include "harness/campaign/campaign_result.h"
 #include "harness/campaign/sample_record.h"
+#include "harness/confidence/criterion.h"
 #include "harness/confidence/item_bounds.h"
 #include "harness/config/scenario.h"
 
@@ -11,6 +12,15 @@ namespace parallax::harness {
 
 /// Counts an execution among those that went the same way.
 void count_path(const SampleRecord& record, LoopResult& loop);
+
+/// States the bound and the claim of executions whose starts were drawn so. Nothing is claimed
+/// where one did not end.
+void claim_executions(const Scenario& scenario, const Tally& tally, DrawnStarts drawn,
+                      TraceResult& stream);
+
+/// Caveats about executions that did not end, initial states that none began in, and starts that
+/// were chosen.
+void add_loop_caveats(TraceResult& stream);
 
 /// Sets the rates of the causes with their intervals, at 95 %, and puts the most frequent first;
 /// adds what is to be known of them to the caveats. `counted`: the executions that rates are about;

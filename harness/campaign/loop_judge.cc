@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "harness/campaign/run_setup.h"
 #include "harness/region/measured.h"
 
 namespace parallax::harness {
@@ -203,6 +204,23 @@ std::vector<LoopState> path_states(const StateMapping& mapping, const ModelFluen
 LoopJudgement judge_path(const StateMapping& mapping, const ModelFluents& fluents, LoopFeed& feed,
                          const SampleRecord& record, Comparison comparison) {
   return PathJudge(mapping, fluents, feed, record, comparison).judge();
+}
+
+Discrepancy path_discrepancy(const SampleRecord& record, const LoopJudgement& judgement,
+                             const SampleRecord& again) {
+  Discrepancy found;
+  found.kind = judgement.kind;
+  found.trace = record.trace;
+  found.sample = record.sample;
+  found.seed = record.seed;
+  found.first_divergence = judgement.divergence.event + 1;
+  found.first = judgement.fluents;
+  if (judgement.kind == DiscrepancyKind::kLasting) found.fluents = judgement.fluents;
+  found.cause = judgement.cause;
+  found.confirmation = confirmation_of(record, again);
+  found.path = judgement.divergence;
+  found.record = record;
+  return found;
 }
 
 }  // namespace parallax::harness

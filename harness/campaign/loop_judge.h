@@ -37,4 +37,9 @@ std::vector<LoopState> path_states(const StateMapping& mapping, const ModelFluen
 LoopJudgement judge_path(const StateMapping& mapping, const ModelFluents& fluents, LoopFeed& feed,
                          const SampleRecord& record, Comparison comparison);
 
+/// The discrepancy that the judgement found, without the end of the simulation. `again`: its
+/// repetition.
+Discrepancy path_discrepancy(const SampleRecord& record, const LoopJudgement& judgement,
+                             const SampleRecord& again);
+
 }  // namespace parallax::harness

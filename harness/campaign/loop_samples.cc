@@ -7,6 +7,7 @@
 
 #include "compiler/base/contract.h"
 #include "compiler/base/hash.h"
+#include "harness/campaign/start_draw.h"
 
 namespace parallax::harness {
 namespace {
@@ -159,19 +160,7 @@ std::int64_t drawn_state(std::uint64_t campaign_seed, std::int64_t sample, std::
                          std::span<const double> weights) {
   const DrawKey key{campaign_seed, base::fnv1a64(kStateStream), DrawPhase::kCertify,
                     static_cast<std::uint64_t>(sample), 0};
-  const double uniform = CounterRng(key).uniform(0);
-  if (weights.empty()) {
-    const auto drawn = static_cast<std::size_t>(uniform * static_cast<double>(states));
-    return static_cast<std::int64_t>(std::min(drawn, states - 1)) + 1;
-  }
-  double sum = 0.0;
-  for (const double weight : weights) sum += weight;
-  std::size_t drawn = 0;
-  for (double left = uniform * sum; drawn + 1 < states; ++drawn) {
-    left -= weights[drawn];
-    if (left < 0.0) break;
-  }
-  return static_cast<std::int64_t>(drawn) + 1;
+  return state_at(CounterRng(key).uniform(0), states, weights);
 }
 
 std::uint64_t loop_start_stream() { return base::fnv1a64(kStartStream); }

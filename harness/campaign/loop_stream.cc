@@ -1,11 +1,15 @@
 #include "harness/campaign/loop_stream.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "compiler/base/codes/campaigns.h"
+#include "harness/campaign/loop_counts.h"
+#include "harness/campaign/loop_judge.h"
 
 namespace parallax::harness {
 
@@ -65,6 +69,7 @@ base::Result<bool> LoopStream::prepare() {
   if (!*states) return false;
   std::vector<LoopStart> starts;
   has_weights_ = !(*states)->weights.empty();
+  common_ = common_fluents((*states)->holds);
   for (auto& holds : (*states)->holds) {
     auto state = start_state(feed_, std::move(holds));
     auto parts = prepare_trace(scenario_, ground, bench_.simulator(), *state, sink_);
@@ -141,6 +146,42 @@ std::optional<SampleRecord> LoopStream::repeat(const SampleRecord& record, bool 
     bench_.pool().submit_repeat(samples_, record);
   }
   return result_of(record.sample, DrawPhase::kConfirm);
+}
+
+std::string LoopStream::text(std::int64_t state) const {
+  const auto& start = samples_->starts()[static_cast<std::size_t>(state) - 1];
+  return state_text(start.state->points.front().holds, common_, *start.state->symbols);
+}
+
+CleanSample LoopStream::clean_sample(const SampleRecord& record) const {
+  const auto is_clean = [&scenario = scenario_, &feed = feed_,
+                         &bench = bench_](const SampleRecord& again) -> std::optional<bool> {
+    const auto judgement =
+        judge_path(*scenario.mapping, bench.fluents(), feed, again, scenario.comparison());
+    if (!judgement.missing.empty()) return false;
+    if (judgement.admitted == base::Known::kUndecided || bench.stopped()) return std::nullopt;
+    return judgement.admitted == base::Known::kYes && why_unfinished(*again.path, scenario).empty();
+  };
+  return {record, std::make_shared<const RepeatedExecution>(samples_), is_clean};
+}
+
+base::DiagnosticBuilder LoopStream::report_refused(const SampleRecord& record) const {
+  const auto& path = *record.path;
+  if (path.end == PathEnd::kUnboundReason || path.end == PathEnd::kUnnamedObject) {
+    return feed_.report_end(path, record.reason);
+  }
+  const auto in = fmt::format("in simulation {}.{}", record.trace, record.sample);
+  const auto code = codes::kSimulatorRefused;
+  if (record.observations.empty() || path.steps.empty()) {
+    return sink_.error(code, scenario_.sampling_source, fmt::format("refused the start {}", in),
+                       record.reason);
+  }
+  const auto event = ground_fluent(path.steps.back().event);
+  const auto action =
+      std::find_if(scenario_.actions.begin(), scenario_.actions.end(),
+                   [&](const auto& binding) { return binding.event == event.symbol; });
+  return sink_.error(code, action->source,
+                     fmt::format("refused the action of `{}` {}", event.text, in), record.reason);
 }
 
 }  // namespace parallax::harness

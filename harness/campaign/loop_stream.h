@@ -4,11 +4,13 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "harness/campaign/journal.h"
 #include "harness/campaign/loop_input.h"
 #include "harness/campaign/loop_samples.h"
+#include "harness/campaign/start_draw.h"
 #include "harness/campaign/trial.h"
 #include "harness/config/scenario.h"
 
@@ -48,6 +50,8 @@ class LoopStream {
   std::int64_t initial_states() const { return std::ssize(samples_->starts()); }
   bool has_weights() const { return has_weights_; }
   const LoopStart& start_of(const SampleRecord& record) const { return samples_->start_of(record); }
+  /// What tells an initial state from the others.
+  std::string text(std::int64_t state) const;
   std::int64_t next_sample() const { return next_; }  // from 1
   /// Lets the workers simulate all samples up to this one.
   void submit_to(std::int64_t last);
@@ -57,6 +61,9 @@ class LoopStream {
   /// Simulates the record's actions once more. None when stopped. Unless the stream `goes_on`, what
   /// ran ahead is forgotten.
   std::optional<SampleRecord> repeat(const SampleRecord& record, bool goes_on);
+  /// The execution on record, and how it is made and judged again; it was clean.
+  CleanSample clean_sample(const SampleRecord& record) const;
+  base::DiagnosticBuilder report_refused(const SampleRecord& record) const;
   bool on_record(const SampleRecord& record) const {
     return recorded(record.sample, DrawPhase::kCertify) != nullptr;
   }
@@ -75,6 +82,7 @@ class LoopStream {
   base::DiagnosticSink& sink_;
   const Journal* journal_ = nullptr;
   bool has_weights_ = false;
+  FluentSet common_;  // true in each of the initial states
   std::shared_ptr<const LoopSamples> samples_;
   StartGuide* guide_ = nullptr;
   std::map<std::int64_t, GuidedStart> chosen_;  // by sample; of the others the start is drawn

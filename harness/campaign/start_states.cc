@@ -93,6 +93,7 @@ base::Status StartStates::list() {
   if (!more) {
     states_ = std::move((*starts)->states);
     weights_ = std::move((*starts)->weights);
+    common_ = common_fluents(states_);
     leave_out_unrealisable();
     return base::Unit{};
   }
@@ -131,6 +132,7 @@ void StartStates::leave_out_unrealisable() {
   }
   if (kept.empty()) return;  // what is wrong with the first is reported when it is prepared
   states_ = std::move(kept);
+  common_ = common_fluents(states_);
   weights_ = std::move(weights);
   unrealisable_ = std::move(reasons);
 }
@@ -149,16 +151,7 @@ std::string StartStates::text(std::int64_t state) const {
     return {};
   }
   const auto& holds = states_[static_cast<std::size_t>(std::max<std::int64_t>(state, 1) - 1)];
-  std::vector<std::string> told;
-  for (const auto fluent : holds) {
-    const bool common = std::all_of(states_.begin(), states_.end(), [&](const State& other) {
-      return runtime::contains(other, fluent);
-    });
-    if (!common) told.emplace_back(trace_->symbols->name(fluent));
-  }
-  std::sort(told.begin(), told.end());
-  return told.empty() ? std::string("none of the others' fluents")
-                      : fmt::format("{}", fmt::join(told, " "));
+  return state_text(holds, common_, *trace_->symbols);
 }
 
 base::Result<std::optional<std::int64_t>> StartStates::state_of(std::int64_t sample,
@@ -193,18 +186,7 @@ std::int64_t StartStates::permuted(std::int64_t position) {
 }
 
 std::int64_t StartStates::state_at(double u) const {
-  if (is_single()) return 0;
-  if (weights_.empty()) {
-    const auto drawn = static_cast<std::size_t>(u * static_cast<double>(states_.size()));
-    return static_cast<std::int64_t>(std::min(drawn, states_.size() - 1)) + 1;
-  }
-  double left = u * std::accumulate(weights_.begin(), weights_.end(), 0.0);
-  std::size_t drawn = 0;
-  for (; drawn + 1 < weights_.size(); ++drawn) {
-    left -= weights_[drawn];
-    if (left < 0.0) break;
-  }
-  return static_cast<std::int64_t>(drawn) + 1;
+  return is_single() ? 0 : harness::state_at(u, states_.size(), weights_);
 }
 
 std::set<std::string> StartStates::holds(std::int64_t state) const {

@@ -10,6 +10,7 @@
 
 #include "compiler/base/diagnostic.h"
 #include "harness/campaign/sample_runner.h"
+#include "harness/campaign/start_draw.h"
 #include "harness/campaign/start_result.h"
 #include "harness/campaign/trace_input.h"
 #include "harness/config/scenario.h"
@@ -76,7 +77,7 @@ class StartStates {
   std::string text(std::int64_t state) const;
 
  private:
-  using State = std::vector<compiler::FluentId>;
+  using State = FluentSet;
 
   explicit StartStates(const StartSources& sources) : sources_(sources) {}
   base::Status list();
@@ -92,6 +93,7 @@ class StartStates {
   std::uint64_t trace_key_ = 0;
   std::vector<compiler::FluentId> fluents_;  // that tell states apart, ascending
   std::vector<State> states_;                // by number - 1
+  FluentSet common_;                         // true in each of them
   std::vector<double> weights_;              // none: each equally likely
   bool more_ = false;
   std::vector<std::vector<State>> parts_;  // if so

@@ -8,30 +8,46 @@
 
 namespace parallax::harness {
 
-void count_start(const StartStates& states, const TrialSample& sample, StartResult& result) {
-  const auto state = sample.record.start_state;
+void count_start(std::int64_t state, StartOutcome outcome,
+                 const std::function<std::string(std::int64_t)>& text, StartResult& result) {
   if (state == 0) {
     result.tried = 1;
     return;
   }
   const auto [at, is_new] = result.states.try_emplace(state);
   auto& counts = at->second;
-  if (is_new) counts.text = states.text(state);
+  if (is_new) counts.text = text(state);
   const bool was_seen = counts.seen() > 0;
-  switch (sample.verdict) {
-    case SampleVerdict::kLost:
-    case SampleVerdict::kLostTooOften:
+  switch (outcome) {
+    case StartOutcome::kLost:
       ++counts.lost;
       break;
-    case SampleVerdict::kDiscrepancy:
+    case StartOutcome::kDiscrepancy:
       ++counts.discrepancies;
       break;
-    case SampleVerdict::kAsPredicted:
-    case SampleVerdict::kAdmitted:
+    case StartOutcome::kClean:
       ++counts.clean;
       break;
   }
   if (!was_seen && counts.seen() > 0) ++result.tried;
+}
+
+void count_start(const StartStates& states, const TrialSample& sample, StartResult& result) {
+  auto outcome = StartOutcome::kClean;
+  switch (sample.verdict) {
+    case SampleVerdict::kLost:
+    case SampleVerdict::kLostTooOften:
+      outcome = StartOutcome::kLost;
+      break;
+    case SampleVerdict::kDiscrepancy:
+      outcome = StartOutcome::kDiscrepancy;
+      break;
+    case SampleVerdict::kAsPredicted:
+    case SampleVerdict::kAdmitted:
+      break;
+  }
+  const auto text = [&](std::int64_t state) { return states.text(state); };
+  count_start(sample.record.start_state, outcome, text, result);
 }
 
 DrawnStarts drawn_starts(const TraceResult& result, DrawnStarts drawn) {

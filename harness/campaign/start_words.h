@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,14 @@
 
 namespace parallax::harness {
 
-/// Counts a simulation by its initial state.
+/// How a simulation ended, for the counts of its initial state.
+enum class StartOutcome : std::uint8_t { kClean, kDiscrepancy, kLost };
+
+/// Counts a simulation by the number of its initial state; 0: there is one only. `text` says what
+/// tells a state from the others; it is asked when the first one begins in the state.
+void count_start(std::int64_t state, StartOutcome outcome,
+                 const std::function<std::string(std::int64_t)>& text, StartResult& result);
+/// The same of a sample of a trace.
 void count_start(const StartStates& states, const TrialSample& sample, StartResult& result);
 
 /// The law of a trace's starts, with its initial states.

@@ -231,34 +231,53 @@ std::string drawn_from(std::string_view region, const DrawnStarts& drawn) {
 }
 
 std::string single_state_text(const DrawnStates& states, double epsilon) {
-  if (states.law != Initial::kAll || !states.all || *states.all <= 1) return {};
+  if (states.law != Initial::kAll || states.differ || !states.all || *states.all <= 1) return {};
   const double single = epsilon * static_cast<double>(*states.all);
   if (single >= 1.0) return {};
   return fmt::format("; in each single initial state fewer than {}", percent_up(single));
 }
 
+namespace {
+
+std::string_view likely_text(bool by_weights) {
+  return by_weights ? "each as likely as its weight in `start_weights`" : "each equally likely";
+}
+
+/// "each tried", "5 of 6 tried"
+std::string tried_text(const DrawnStates& states) {
+  if (states.all && states.tried >= *states.all) return "each tried";
+  if (states.differ) return "not each tried";
+  return states.all ? fmt::format("{} of {} tried", states.tried, *states.all)
+                    : fmt::format("{} tried", states.tried);
+}
+
+/// "6 ", "more than 10000 "; empty where it differs from trace to trace.
+std::string number_text(const DrawnStates& states) {
+  if (states.differ) return {};
+  return states.all ? fmt::format("{} ", *states.all)
+                    : fmt::format("more than {} ", kMostInitialStates);
+}
+
+}  // namespace
+
 std::string starts_text(std::string_view region, const DrawnStarts& drawn, bool valid) {
   const std::string_view only_valid = valid ? "valid " : "";
-  const auto& [law, all, tried, unrealisable] = drawn.initial;
-  if (all == 1 && unrealisable == 0) {
+  const auto& states = drawn.initial;
+  if (!states.differ && states.all == 1 && states.unrealisable == 0) {
     return fmt::format("{}start states {}", only_valid, drawn_from(region, drawn));
   }
-  const auto number = all ? std::to_string(*all) : fmt::format("more than {}", kMostInitialStates);
-  if (law == Initial::kFirst) {
-    return fmt::format(
-        "{}start states {}", only_valid,
-        drawn_from(fmt::format("{} of the first of its {} initial states", region, number), drawn));
+  if (states.law == Initial::kFirst) {
+    return fmt::format("{}start states {}", only_valid,
+                       drawn_from(fmt::format("{} of the first of its {}initial states", region,
+                                              number_text(states)),
+                                  drawn));
   }
-  const auto each = all && tried >= *all
-                        ? std::string("each tried")
-                        : fmt::format("{} tried", all ? fmt::format("{} of {}", tried, *all)
-                                                      : std::to_string(tried));
   return fmt::format(
-      "{}starts (one of {}{} initial states that lead to its events{}, {} and {}; then {})",
-      only_valid, all ? "the " : "", number, unrealisable > 0 ? " and that a start can have" : "",
-      law == Initial::kWeights ? "each as likely as its weight in `start_weights`"
-                               : "each equally likely",
-      each, drawn_from("its region", drawn));
+      "{}starts (one of {}{}initial states that lead to its events{}, {} and {}; then {})",
+      only_valid, states.all ? "the " : "", number_text(states),
+      states.unrealisable > 0 ? " and that a start can have" : "",
+      likely_text(states.law == Initial::kWeights), tried_text(states),
+      drawn_from("its region", drawn));
 }
 
 std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,

@@ -109,6 +109,9 @@ struct DrawnStates {
   std::optional<std::int64_t> all = 1;  // none: more than can be listed
   std::int64_t tried = 1;
   std::int64_t unrealisable = 0;  // besides: those that no start of the world can be
+  /// They are those of several traces, each of which has a number of its own: `all` is 1, and
+  /// `tried` is 1 if each was tried, else 0.
+  bool differ = false;
 };
 
 /// The law by which starts are drawn, in words.
@@ -131,7 +134,7 @@ std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comp
                   const DrawnStarts& drawn = {});
 /// "start states drawn uniformly from the start region", or "starts (one of the 6 initial states
 /// that lead to its events, each equally likely and each tried; then drawn uniformly from its
-/// region)". `valid`: only of valid ones.
+/// region)". Without the numbers where they differ. `valid`: only of valid ones.
 std::string starts_text(std::string_view region, const DrawnStarts& drawn, bool valid);
 /// "; in each single initial state fewer than 30 %", where `epsilon` bounds the mean of them;
 /// empty where nothing follows for a single one.

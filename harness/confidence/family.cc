@@ -42,25 +42,6 @@ std::string SpendingRule::text() const {
                      *traces_, *traces_);
 }
 
-namespace {
-
-/// The starts of traces with different numbers of initial states.
-std::string starts_of_several(const DrawnStates& states, bool all_tried, bool rejected,
-                              const DrawnStarts& drawn) {
-  const auto* valid = rejected ? "valid " : "";
-  if (states.law == Initial::kFirst) {
-    return fmt::format("{}start states {}", valid,
-                       drawn_from("the start region of the first of its initial states", drawn));
-  }
-  return fmt::format(
-      "{}starts (one of the initial states that lead to its events, {}{}; then {})", valid,
-      states.law == Initial::kWeights ? "each as likely as its weight in `start_weights`"
-                                      : "each equally likely",
-      all_tried ? " and each tried" : ", not each tried", drawn_from("its region", drawn));
-}
-
-}  // namespace
-
 std::string family_claim(std::span<const FamilyMember> members, const CriterionSpec& spec,
                          Comparison comparison, const FamilyScope& scope) {
   std::int64_t clean = 0, lost = 0, runs = 0, claimed = 0;
@@ -109,17 +90,20 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
                              ? std::string()
                              : fmt::format(", {} counted as {}", base::counted(lost, "lost run"),
                                            base::agreed(lost, "a failure", "failures"));
-  if (one_number && states != nullptr) drawn.initial = *states;
-  if (one_number) drawn.initial.tried = least_tried;
+  if (one_number) {
+    drawn.initial = *states;
+    drawn.initial.tried = least_tried;
+  } else {
+    drawn.initial = {states->law, 1, all_tried ? 1 : 0, 0, true};
+  }
   const double epsilon = as_planned ? spec.epsilon : worst.epsilon;
   const auto region = all == 1 ? "the start region" : "its start region";
-  const auto starts = one_number ? starts_text(region, drawn, rejected)
-                                 : starts_of_several(*states, all_tried, rejected, drawn);
   auto text = fmt::format(
       "with {} confidence, {}fewer than {} of {} give a discrepancy {}{} ({} clean {} of {}{}){}",
-      level_text(worst.confidence_level), of_traces, percent_up(epsilon), starts,
+      level_text(worst.confidence_level), of_traces, percent_up(epsilon),
+      starts_text(region, drawn, rejected),
       comparison == Comparison::kFinal ? "in the last state" : "at any step",
-      one_number ? single_state_text(drawn.initial, epsilon) : std::string(), clean,
+      single_state_text(drawn.initial, epsilon), clean,
       base::agreed(clean, "run", "runs"), runs, lost_text, kSupposition);
   if (!scope.completeness.empty()) text += "; " + scope.completeness;
   if (scope.split_initial) {
