@@ -122,10 +122,10 @@ class JournalReader {
         return "it differs from the simulation that it repeats, but for the digest";
       }
     }
-    // One that ran ahead of a loss may have been made anew from another initial state.
+    // One that ran ahead may have been made anew from another initial state.
     const auto before = journal_.samples.find(key);
-    const bool anew = before != journal_.samples.end() && record.start_state > 0 &&
-                      before->second.start_state > 0;
+    const bool anew = before != journal_.samples.end() &&
+                      (record.visit || (record.start_state > 0 && before->second.start_state > 0));
     if (before != journal_.samples.end() && !anew) return "this simulation stands there twice";
     journal_.samples.insert_or_assign(key, std::move(record));
     journal_.places.insert_or_assign(key, line_);

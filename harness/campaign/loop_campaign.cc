@@ -10,15 +10,15 @@
 #include "compiler/base/contract.h"
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/loop_counts.h"
-#include "harness/campaign/loop_cover.h"
 #include "harness/campaign/loop_judge.h"
 #include "harness/campaign/loop_stream.h"
+#include "harness/campaign/loop_tally.h"
 #include "harness/campaign/repetition.h"
 #include "harness/campaign/run_setup.h"
 #include "harness/campaign/start_check.h"
+#include "harness/campaign/start_visits.h"
 #include "harness/campaign/start_words.h"
 #include "harness/confidence/criterion.h"
-#include "harness/confidence/item_bounds.h"
 
 namespace parallax::harness {
 namespace {
@@ -38,8 +38,7 @@ class LoopCampaign {
         sink_(sink),
         criterion_(make_criterion(scenario.criterion)),
         limit_(run_limit(scenario)),
-        tally_(RegressionFrame{}),
-        rated_(planned()),
+        tally_(planned(), options.seed, stream_),
         samples_(scenario, feed, bench_, options.seed, sink),
         recorder_(options.record, options.run_dir),
         bench_(
@@ -75,10 +74,11 @@ class LoopCampaign {
     stream_.starts.law = scenario_.initial;
     if (scenario_.until_covered && !watch_what_is_shown()) return finished(true);
     if (!samples_.continue_from(*journal_)) return sink_.already_reported();
-    const auto ended = sample();
+    auto ended = sample();
+    if (ended && *ended == End::kDecided) ended = visit_others();
     result_.failed = !ended;
     if (ended && *ended != End::kStopped && *ended != End::kLost) repeat_first_clean();
-    if (result_.failed && tally_.runs() == 0) return sink_.already_reported();
+    if (result_.failed && tally_.runs().runs() == 0) return sink_.already_reported();
     return finished(!ended || *ended == End::kStopped);
   }
 
@@ -103,11 +103,12 @@ class LoopCampaign {
 
   base::Result<End> sample() {
     for (;;) {
-      const auto decision = criterion_->decide(tally_);
+      const auto decision = criterion_->decide(tally_.runs());
       report_progress(decision);
-      if (decision.stop && is_covered()) return End::kDecided;
-      if (executions() >= limit_.max_runs) return End::kRunLimit;
-      if (goes_on_anyway() && executions() >= planned() && is_covered()) return End::kPlanned;
+      if (decision.stop && tally_.is_covered()) return End::kDecided;
+      if (tally_.executions() >= limit_.max_runs) return End::kRunLimit;
+      if (goes_on_anyway() && tally_.executions() >= planned() && tally_.is_covered())
+        return End::kPlanned;
       samples_.submit_to(last_wanted(decision));
       auto next = samples_.next();
       if (!next || !check_written(*journal_, options_, sink_)) return sink_.already_reported();
@@ -115,6 +116,26 @@ class LoopCampaign {
       auto end = consume(**std::move(next));
       if (!end) return sink_.already_reported();
       if (*end) return **end;
+    }
+  }
+
+  /// Enough was executed for the claim: the initial states that nothing was seen of are executed
+  /// once each. These executions count for no claim.
+  base::Result<End> visit_others() {
+    auto& starts = stream_.starts;
+    VisitRounds rounds(starts, starts.is_single() ? 0 : *starts.all);
+    for (;;) {
+      const auto left = rounds.next(limit_.most - tally_.executions() - starts.visits);
+      if (left.empty()) return End::kDecided;
+      for (const auto state : left) {
+        auto record = samples_.visit(state);
+        if (!check_written(*journal_, options_, sink_)) return sink_.already_reported();
+        if (!record) return End::kStopped;
+        ++starts.visits;
+        const auto end = consume(*std::move(record));
+        if (!end) return sink_.already_reported();
+        if (*end) return **end;
+      }
     }
   }
 
@@ -129,21 +150,18 @@ class LoopCampaign {
   bool watch_what_is_shown() {
     auto* watch = feed_.cover(options_.seed);
     if (watch == nullptr) return false;
-    cover_.emplace(*watch, scenario_.criterion);
+    tally_.watch(*watch, scenario_.criterion);
     if (scenario_.limits.max_runs == 0) {
-      limit_.max_runs = std::max(limit_.max_runs, 2 * cover_->runs_needed());
+      limit_.max_runs = std::max(limit_.max_runs, 2 * tally_.cover()->runs_needed());
+      limit_.most = std::max(limit_.most, limit_.max_runs);
     }
     return true;
   }
 
-  bool is_covered() const { return !cover_ || cover_->is_over(); }
-
   /// Something was found that ends other runs.
   bool goes_on_anyway() const {
-    return options_.keep_going && (tally_.mismatch() > 0 || stream_.loop->unfinished > 0);
+    return options_.keep_going && (tally_.runs().mismatch() > 0 || stream_.loop->unfinished > 0);
   }
-  /// Those with a start that was drawn.
-  std::int64_t executions() const { return tally_.runs() + drawn_unfinished_; }
   /// With --keep-going and a discrepancy: as many as if all had been clean, so that the number does
   /// not depend on what is found, and rates are rates.
   std::int64_t planned() const { return std::min(limit_.needed, limit_.max_runs); }
@@ -154,7 +172,7 @@ class LoopCampaign {
     const std::int64_t window = options_.jobs == 1 ? 1 : 2 * options_.jobs;
     const auto guided = stream_.loop->guided.value_or(0);
     auto asked = goes_on_anyway() ? planned() : decision.runs_needed.value_or(limit_.max_runs);
-    if (!is_covered()) asked = std::max(asked, cover_->runs_needed());
+    if (!tally_.is_covered()) asked = std::max(asked, tally_.cover()->runs_needed());
     const auto needed = std::max(asked + guided, samples_.next_sample());
     return std::min({samples_.next_sample() + window - 1, needed, limit_.max_runs + guided});
   }
@@ -185,23 +203,15 @@ class LoopCampaign {
       return std::optional(End::kStopped);
     }
     bench_.end_row_of_losses();
-    count(record);
     count_by_start(record, judgement.admitted == base::Known::kYes ? StartOutcome::kClean
-                                                                    : StartOutcome::kDiscrepancy);
+                                                                   : StartOutcome::kDiscrepancy);
     if (judgement.admitted == base::Known::kNo) return accept(std::move(record), judgement);
     const auto unfinished = why_unfinished(*record.path, scenario_);
     using Kept = RunRecorder::Verdict;
-    recorder_.judge(record, unfinished.empty() ? Kept::kClean : Kept::kFinding);
-    const bool is_rated = note(record, true);
-    auto& loop = *stream_.loop;
-    if (unfinished.empty()) {
-      if (!is_guided(record)) tally_.add_clean_elsewhere();
-      if (is_rated) ++loop.causes_runs;
-      ++stream_.clean;
-    } else {
-      if (!is_guided(record)) ++drawn_unfinished_;
-      if (loop.unfinished++ == 0) loop.why_unfinished = unfinished;
-    }
+    recorder_.judge(record, !unfinished.empty() ? Kept::kFinding
+                            : record.visit      ? Kept::kNothing
+                                                : Kept::kClean);
+    tally_.add_admitted(record, start.sampler, unfinished);
     tell(record, unfinished.empty() ? "clean" : "unfinished");
     if (unfinished.empty() && !clean_) clean_ = samples_.clean_sample(record);
     consumed_.push_back(std::move(record));
@@ -229,34 +239,9 @@ class LoopCampaign {
     options_.on_sample(std::move(row));
   }
 
-  /// Claims are about starts that were drawn; of others only what is found counts.
-  static bool is_guided(const SampleRecord& record) { return !record.path->target.empty(); }
-  void note_guided() { stream_.loop->guided = stream_.loop->guided.value_or(0) + 1; }
-
-  /// An execution that came to a result. Is it one of those that rates are about?
-  bool note(const SampleRecord& record, bool admitted) {
-    if (cover_) cover_->note(record, admitted);
-    if (is_guided(record)) {
-      note_guided();
-      return false;
-    }
-    if (cover_) cover_->add_drawn();
-    return rated_.next();
-  }
-
   std::optional<End> lost(SampleRecord record) {
     recorder_.judge(record, RunRecorder::Verdict::kNothing);
-    stream_.rejected += record.rejected;
-    count_law(record);
-    if (is_guided(record)) {
-      note_guided();
-    } else {
-      tally_.add_rejected(record.rejected);
-      tally_.add_lost();
-      if (cover_) cover_->add_lost();
-      (void)rated_.next();  // it has its place, but what it would have shown is not known
-    }
-    count_loss(record, stream_);
+    tally_.add_lost(record, samples_.start_of(record).sampler);
     count_by_start(record, StartOutcome::kLost);
     tell(record, "lost");
     lost_too_often_ = bench_.lost_too_often(record, samples_.on_record(record));
@@ -264,35 +249,24 @@ class LoopCampaign {
     return lost_too_often_ ? std::optional(End::kLost) : std::nullopt;
   }
 
-  void count_law(const SampleRecord& record) {
-    law_.add(samples_.start_of(record).sampler, options_.seed, loop_start_stream(), record);
-  }
-
-  void count(const SampleRecord& record) {
-    count_law(record);
-    if (!is_guided(record)) tally_.add_rejected(record.rejected);
-    stream_.rejected += record.rejected;
-    if (record.retries > 0) ++stream_.retried;
-    count_path(record, *stream_.loop);
-  }
-
   /// Repeats the first simulation of each cause once: a discrepancy that cannot be repeated says so
   /// in the report.
   std::optional<End> accept(SampleRecord record, const LoopJudgement& judgement) {
     recorder_.judge(record, RunRecorder::Verdict::kFinding);
+    const auto& sampler = samples_.start_of(record).sampler;
     auto& causes = stream_.loop->causes;
     const auto known = std::find_if(causes.begin(), causes.end(), [&](const CauseRate& rate) {
       return rate.cause == judgement.cause.text;
     });
     if (known != causes.end()) {
-      if (note_mismatch(record)) ++known->count;
+      if (tally_.add_mismatch(record, sampler)) ++known->count;
       tell(record, "discrepancy", &judgement);
       consumed_.push_back(std::move(record));
       return std::nullopt;
     }
     const auto again = samples_.repeat(record, options_.keep_going);
     if (!again) return End::kStopped;
-    const std::int64_t rated = note_mismatch(record) ? 1 : 0;
+    const std::int64_t rated = tally_.add_mismatch(record, sampler) ? 1 : 0;
     tell(record, "discrepancy", &judgement);
     if (options_.keep_going) {
       causes.push_back({judgement.cause.text, rated, 0.0, 0.0, 0.0, record.sample,
@@ -307,25 +281,18 @@ class LoopCampaign {
     return options_.keep_going ? std::nullopt : std::optional(End::kDiscrepancy);
   }
 
-  /// Is it one of those that rates are about?
-  bool note_mismatch(const SampleRecord& record) {
-    const bool is_rated = note(record, false);
-    if (!is_guided(record)) tally_.add_mismatch();
-    if (is_rated) ++stream_.loop->causes_runs;
-    return is_rated;
-  }
-
   void report_progress(const Decision& decision) const {
     if (!options_.progress) return;
     const std::chrono::duration<double> elapsed = LoopClock::now() - started_;
     CampaignProgress progress;
     progress.trace = 1;
-    progress.done = tally_.runs();
+    progress.done = tally_.runs().runs();
     progress.needed = goes_on_anyway() ? planned()
                                        : std::min(decision.runs_needed.value_or(limit_.max_runs),
                                                   limit_.max_runs);
-    if (!is_covered()) {
-      progress.needed = std::min(std::max(progress.needed, cover_->runs_needed()), limit_.max_runs);
+    if (!tally_.is_covered()) {
+      progress.needed =
+          std::min(std::max(progress.needed, tally_.cover()->runs_needed()), limit_.max_runs);
     }
     const auto made = static_cast<double>(bench_.runs_made());
     progress.runs_per_s = elapsed.count() > 0.0 ? made / elapsed.count() : 0.0;
@@ -334,29 +301,34 @@ class LoopCampaign {
 
   void fill_stream() {
     auto& stream = stream_;
-    stream.law = law_.result();
-    stream.left_out = law_.drawn().left_out;
-    stream.is_decided =
-        criterion_->decide(tally_).stop && stream.loop->unfinished == 0 && is_covered();
-    stream.verdict = !result_.discrepancies.empty() ? CampaignVerdict::kDiscrepancy
-                     : stream.is_decided            ? CampaignVerdict::kNoDiscrepancy
-                                                    : CampaignVerdict::kInconclusive;
-    stream.simulations = executions() + stream.loop->guided.value_or(0);
-    claim_executions(scenario_, tally_, law_.drawn(), stream);
+    stream.law = tally_.law().result();
+    stream.left_out = tally_.law().drawn().left_out;
+    stream.is_decided = criterion_->decide(tally_.runs()).stop && stream.loop->unfinished == 0 &&
+                        tally_.is_covered();
+    const auto* found = result_.discrepancies.empty() ? nullptr : &result_.discrepancies.front();
+    const bool is_shown = stream.is_decided && stream.starts.is_covered();
+    stream.verdict = found != nullptr ? CampaignVerdict::kDiscrepancy
+                     : is_shown       ? CampaignVerdict::kNoDiscrepancy
+                                      : CampaignVerdict::kInconclusive;
+    stream.simulations = tally_.executions() + stream.loop->guided.value_or(0);
+    claim_executions(scenario_, tally_.runs(), tally_.law().drawn(), stream);
+    if (found != nullptr && found->record.visit) stream.claim = kFoundByVisit;
     if (feed_.plan().performs().empty()) {
       stream.caveats.emplace_back("the plan performs nothing: initial states alone were compared");
     }
     add_loop_caveats(stream);
-    rate_causes(rated_, lost_too_often_, result_.interrupted, stream);
-    const auto* found = result_.discrepancies.empty() ? nullptr : &result_.discrepancies.front();
+    if (found == nullptr) {
+      add_start_caveats(stream.starts, tally_.executions(), limit_.most, stream.caveats);
+    }
+    rate_causes(tally_.rated(), lost_too_often_, result_.interrupted, stream);
     add_loss_caveats(stream);
     add_simulator_caveats(result_.simulator, found, stream);
   }
 
   void fill_cover() {
-    if (!cover_) return;
+    if (!tally_.cover()) return;
     const auto& cover =
-        stream_.loop->cover.emplace(cover_->result(executions() >= limit_.max_runs));
+        stream_.loop->cover.emplace(tally_.cover()->result(tally_.executions() >= limit_.max_runs));
     using CoverEnd = CoverResult::End;
     if (cover.end == CoverEnd::kShown) result_.exploration = to_string(cover.end);
     if (cover.end == CoverEnd::kRare) result_.exploration = "complete up to bound";
@@ -402,14 +374,10 @@ class LoopCampaign {
   LoopClock::time_point started_ = LoopClock::now();
   std::unique_ptr<ConfidenceCriterion> criterion_;
   RunLimit limit_;
-  Tally tally_;
-  LawCounter law_;
-  FixedCount rated_;
-  std::optional<LoopCover> cover_;  // of a run that goes on until everything was shown
-  std::int64_t drawn_unfinished_ = 0;
+  TraceResult stream_;
+  LoopTally tally_;
   std::unique_ptr<Journal> journal_;
   CampaignResult result_;
-  TraceResult stream_;
   std::vector<SampleRecord> consumed_;
   std::optional<CleanSample> clean_;  // the first
   bool is_repeating_ = false;         // set before workers repeat it

@@ -38,8 +38,9 @@ void claim_executions(const Scenario& scenario, const Tally& tally, DrawnStarts 
   const auto bound = certified_bound(tally, criterion.confidence_level);
   stream.certified_level = bound.confidence_level;
   stream.certified_epsilon = bound.epsilon;
-  stream.claim = loop_claim(tally, criterion, scenario.comparison(),
-                            {loop.initial_states, loop.has_weights, std::move(drawn)});
+  stream.claim =
+      loop_claim(tally, criterion, scenario.comparison(),
+                 {loop.initial_states, stream.starts.tried, loop.has_weights, std::move(drawn)});
   stream.caveats = caveats(tally, criterion, std::nullopt);
   if (loop.unfinished == 0) return;
   stream.certified_epsilon = 1.0;
@@ -48,12 +49,7 @@ void claim_executions(const Scenario& scenario, const Tally& tally, DrawnStarts 
 
 void add_loop_caveats(TraceResult& stream) {
   const auto& loop = *stream.loop;
-  const auto& starts = stream.starts;
   if (loop.unfinished > 0) stream.caveats.push_back(loop.why_unfinished);
-  if (stream.is_decided && starts.tried < *starts.all) {
-    stream.caveats.push_back(fmt::format("{} of {} initial states began no execution",
-                                         *starts.all - starts.tried, *starts.all));
-  }
   if (const auto guided = loop.guided.value_or(0); guided > 0) {
     stream.caveats.push_back(
         fmt::format("{} of the executions began in states that were chosen; the claim is about the "

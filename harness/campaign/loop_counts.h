@@ -18,8 +18,7 @@ void count_path(const SampleRecord& record, LoopResult& loop);
 void claim_executions(const Scenario& scenario, const Tally& tally, DrawnStarts drawn,
                       TraceResult& stream);
 
-/// Caveats about executions that did not end, initial states that none began in, and starts that
-/// were chosen.
+/// Caveats about executions that did not end, and starts that were chosen by a guide.
 void add_loop_caveats(TraceResult& stream);
 
 /// Sets the rates of the causes with their intervals, at 95 %, and puts the most frequent first;

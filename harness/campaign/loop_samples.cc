@@ -228,8 +228,10 @@ std::optional<SampleRecord> LoopSamples::repeat(const SampleRecord& record, Simu
 }
 
 std::string LoopSamples::wrong_draw(const SampleRecord& record) const {
+  // The reader of journals has held a repetition against what it repeats.
+  const bool drawn = record.phase == DrawPhase::kCertify && is_drawn(record);
   if (!record.path || record.path->start > std::ssize(starts_) ||
-      (record.path->target.empty() && record.path->start != draw_state(record.sample))) {
+      (drawn && record.path->start != draw_state(record.sample))) {
     return "its initial state is not that of its number";
   }
   const auto key = key_of(record.sample);

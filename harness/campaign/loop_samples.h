@@ -91,15 +91,17 @@ class LoopSamples final : public SampleMaker {
   bool repeats_losses_;
 };
 
-/// One execution from a start that was chosen.
+/// One execution from a start that was chosen. `visits`: because no drawn one had tried it.
 class GuidedSample final : public SampleMaker {
  public:
-  GuidedSample(std::shared_ptr<const LoopSamples> samples, GuidedStart start)
-      : samples_(std::move(samples)), start_(std::move(start)) {}
+  GuidedSample(std::shared_ptr<const LoopSamples> samples, GuidedStart start, bool visits = false)
+      : samples_(std::move(samples)), start_(std::move(start)), visits_(visits) {}
 
   std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
                                    const std::function<bool()>& abandoned) const override {
-    return samples_->make_from(sample, start_, simulator, abandoned);
+    auto record = samples_->make_from(sample, start_, simulator, abandoned);
+    if (record) record->visit = visits_;
+    return record;
   }
   std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
                                      const std::function<bool()>& abandoned) const override {
@@ -109,6 +111,7 @@ class GuidedSample final : public SampleMaker {
  private:
   std::shared_ptr<const LoopSamples> samples_;
   GuidedStart start_;
+  bool visits_;
 };
 
 /// The plan executed once more from the start and seed of a record, with the same choices.

@@ -140,6 +140,19 @@ base::Result<std::optional<SampleRecord>> LoopStream::next() {
   return record;
 }
 
+std::optional<SampleRecord> LoopStream::visit(std::int64_t state) {
+  bench_.pool().abandon();
+  const auto sample = next_;
+  submitted_ = next_++;
+  const auto* known = recorded(sample, DrawPhase::kCertify);
+  if (known != nullptr && known->visit && known->path->start == state) {
+    return bench_.stopped() ? std::nullopt : std::optional(*known);
+  }
+  const GuidedStart start{state, {}};
+  bench_.pool().submit(std::make_shared<const GuidedSample>(samples_, start, true), sample);
+  return bench_.pool().wait(sample, DrawPhase::kCertify);
+}
+
 std::optional<SampleRecord> LoopStream::repeat(const SampleRecord& record, bool goes_on) {
   if (recorded(record.sample, DrawPhase::kConfirm) == nullptr) {
     if (!goes_on) bench_.pool().abandon();

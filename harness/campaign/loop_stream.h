@@ -58,6 +58,9 @@ class LoopStream {
   /// Waits for the next sample. None when stopped. Reports kForeignJournalLine for one on record
   /// whose start is not the one that is chosen now.
   base::Result<std::optional<SampleRecord>> next();
+  /// The next sample from an initial state that is chosen because no drawn one had tried it; what
+  /// ran ahead is forgotten. None when stopped.
+  std::optional<SampleRecord> visit(std::int64_t state);
   /// Simulates the record's actions once more. None when stopped. Unless the stream `goes_on`, what
   /// ran ahead is forgotten.
   std::optional<SampleRecord> repeat(const SampleRecord& record, bool goes_on);
@@ -65,7 +68,8 @@ class LoopStream {
   CleanSample clean_sample(const SampleRecord& record) const;
   base::DiagnosticBuilder report_refused(const SampleRecord& record) const;
   bool on_record(const SampleRecord& record) const {
-    return recorded(record.sample, DrawPhase::kCertify) != nullptr;
+    const auto* known = recorded(record.sample, DrawPhase::kCertify);
+    return known != nullptr && known->visit == record.visit;
   }
 
  private:

@@ -29,6 +29,7 @@ RunLimit run_limit(const Scenario& scenario, double share) {
   criterion.share = share;
   RunLimit limit{scenario.limits.max_runs, planned_runs(criterion)};
   if (limit.max_runs == 0) limit.max_runs = std::max(kLeastRunLimit, 2 * limit.needed);
+  limit.most = limit.max_runs;
   // It looks once: what came later would have no part in its answer.
   const bool looks_once = criterion.kind == CriterionKind::kClopperPearson;
   if (looks_once) limit.max_runs = std::min(limit.max_runs, limit.needed);

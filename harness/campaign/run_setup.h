@@ -21,6 +21,7 @@ namespace parallax::harness {
 struct RunLimit {
   std::int64_t max_runs = 0;
   std::int64_t needed = 0;  // 0: it cannot tell
+  std::int64_t most = 0;    // with those that count for no claim
 };
 
 /// `limits: max_runs`, or twice what the criterion needs and at least 300 where none is given: room

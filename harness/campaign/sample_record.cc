@@ -72,6 +72,10 @@ std::string_view to_string(PathEnd end) {
   return kWords[static_cast<std::size_t>(end)];
 }
 
+bool is_drawn(const SampleRecord& record) {
+  return !record.searched && !record.visit && (!record.path || record.path->target.empty());
+}
+
 bool is_of_the_solver(const SampleRecord& record) {
   return record.reason.starts_with(kOfTheSolver);
 }
@@ -142,7 +146,7 @@ SampleRow sample_row(const SampleRecord& record, const char* outcome) {
   row.rejected = record.rejected;
   row.retries = record.retries;
   row.start_state = record.start_state;
-  row.drawn = !record.searched && !record.visit && (!record.path || record.path->target.empty());
+  row.drawn = is_drawn(record);
   row.outcome = outcome;
   row.reason = record.reason;
   row.start = record.initial;

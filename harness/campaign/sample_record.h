@@ -105,6 +105,9 @@ struct SampleRecord {
   friend bool operator==(const SampleRecord&, const SampleRecord&) = default;
 };
 
+/// Was its start drawn? Claims and rates are about such samples alone.
+bool is_drawn(const SampleRecord& record);
+
 /// Was it lost because the simulator took back what it showed (kOfTheSolver)?
 bool is_of_the_solver(const SampleRecord& record);
 

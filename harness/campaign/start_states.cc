@@ -280,17 +280,6 @@ bool StartStates::has(std::int64_t state) const {
   return state >= 1 && state <= static_cast<std::int64_t>(all);
 }
 
-std::vector<std::int64_t> StartStates::others_than(
-    const std::map<std::int64_t, StateCounts>& tried) const {
-  std::vector<std::int64_t> out;
-  if (is_single() || more_) return out;
-  for (std::int64_t state = 1; state <= *count(); ++state) {
-    const auto found = tried.find(state);
-    if (found == tried.end() || found->second.seen() == 0) out.push_back(state);
-  }
-  return out;
-}
-
 std::string StartStates::law_text() const {
   if (is_single()) return {};
   const auto all = count();

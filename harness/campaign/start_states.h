@@ -63,8 +63,6 @@ class StartStates {
 
   /// Whether a sample may begin in the state of this number.
   bool has(std::int64_t state) const;
-  /// The numbers of the listed states, but for `tried`.
-  std::vector<std::int64_t> others_than(const std::map<std::int64_t, StateCounts>& tried) const;
   /// How states are drawn, for a journal: "uniform of 6"; empty where there is one only.
   std::string law_text() const;
   /// Fills in all but the counts. Candidates are those of samples up to `last`.

@@ -108,7 +108,7 @@ std::vector<std::string> failing_states(const StartResult& starts) {
   return out;
 }
 
-void add_start_caveats(const StartResult& starts, std::int64_t max_runs,
+void add_start_caveats(const StartResult& starts, std::int64_t counted, std::int64_t most,
                        std::vector<std::string>& caveats) {
   if (starts.is_single()) return;
   if (starts.law == Initial::kFirst) {
@@ -129,11 +129,11 @@ void add_start_caveats(const StartResult& starts, std::int64_t max_runs,
   }
   if (starts.all) {
     const auto left = *starts.all - starts.tried - std::ssize(starts.unrealisable);
-    if (left > 0 && *starts.all > max_runs) {
+    if (left > 0 && left > most - counted) {
       caveats.push_back(
           fmt::format("{} of {} initial states were not tried; --max-runs {} tries "
                       "each",
-                      left, *starts.all, *starts.all));
+                      left, *starts.all, counted + left));
     } else if (left > 0) {
       caveats.push_back(fmt::format("{} of {} initial states were not tried", left, *starts.all));
     }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/campaign/campaign_result.h"
@@ -34,8 +35,14 @@ std::string tried_text(const StartResult& starts);
 /// "2 of 3 runs from TrolleyAt(onWay)", for each initial state with a discrepancy, the first few.
 std::vector<std::string> failing_states(const StartResult& starts);
 
-/// Caveats about initial states that were not simulated. `max_runs`: the limit that there was.
-void add_start_caveats(const StartResult& starts, std::int64_t max_runs,
+/// Caveats about initial states that were not simulated. `counted`: the runs that count for the
+/// claim; `most`: the limit of runs.
+void add_start_caveats(const StartResult& starts, std::int64_t counted, std::int64_t most,
                        std::vector<std::string>& caveats);
+
+/// The claim of a trace whose discrepancy came in a run that counts for no claim.
+inline constexpr std::string_view kFoundByVisit =
+    "a run from an initial state that no counted run began in gave a discrepancy; nothing is "
+    "claimed about how often there is one";
 
 }  // namespace parallax::harness

@@ -13,6 +13,7 @@
 #include "harness/campaign/run_setup.h"
 #include "harness/campaign/sample_record.h"
 #include "harness/campaign/search_phase.h"
+#include "harness/campaign/start_visits.h"
 #include "harness/campaign/start_words.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/regression.h"
@@ -34,7 +35,7 @@ class TraceCampaign {
                                 as_set(trace().holds(trace().event_count())))),
         spec_(context.scenario.criterion) {
     criterion_ = make_criterion(spec_);
-    max_runs_ = run_limit(context_.scenario).max_runs;
+    limit_ = run_limit(context_.scenario);
     if (context_.family.is_settled()) (void)share_error();
     // With failures, the bound of Clopper and Pearson holds for independent draws only.
     if (criterion_->kind() == CriterionKind::kClopperPearson) trial_.draw_independently();
@@ -57,7 +58,7 @@ class TraceCampaign {
     }
     for (;;) {
       decision_ = criterion_->decide(tally_);
-      if ((decision_.stop || tally_.runs() >= max_runs_) && !share_error()) {
+      if ((decision_.stop || tally_.runs() >= limit_.max_runs) && !share_error()) {
         return finished(TraceEnd::kStopped);
       }
       report_progress();
@@ -66,7 +67,7 @@ class TraceCampaign {
         if (!end) return context_.sink.already_reported();
         return finished(*end);
       }
-      if (tally_.runs() >= max_runs_) return finished(TraceEnd::kRunLimit);
+      if (tally_.runs() >= limit_.max_runs) return finished(TraceEnd::kRunLimit);
       trial_.submit_to(last_wanted());
       auto sample = trial_.next();
       if (!sample || !check_written(context_.journal, context_.options, context_.sink)) {
@@ -99,8 +100,8 @@ class TraceCampaign {
     const std::int64_t jobs = context_.options.jobs;
     const std::int64_t window = jobs == 1 ? 1 : 2 * jobs;
     const auto next = trial_.next_sample();
-    const auto needed = std::max(decision_.runs_needed.value_or(max_runs_), next);
-    return std::min({next + window - 1, needed, max_runs_});
+    const auto needed = std::max(decision_.runs_needed.value_or(limit_.max_runs), next);
+    return std::min({next + window - 1, needed, limit_.max_runs});
   }
 
   /// Searches for a discrepancy. Returns the end that it causes, if any. None of its simulations is
@@ -129,12 +130,12 @@ class TraceCampaign {
   /// Enough was simulated for the claim: the initial states that nothing was seen of are simulated
   /// once each, where the limit of runs has room for it. These runs count for no claim.
   base::Result<TraceEnd> visit_others() {
-    auto& starts = outcome_.result.starts;
+    const auto& starts = outcome_.result.starts;
+    const auto listed = trial_.starts().is_single() ? 0 : trial_.starts().count().value_or(0);
+    VisitRounds rounds(starts, listed);
     for (;;) {
-      const auto left = trial_.starts().others_than(starts.states);
-      const bool has_room = std::ssize(left) <= max_runs_ - tally_.runs() - starts.visits;
-      if (left.empty() || !has_room) return TraceEnd::kDecided;
-      const auto tried_before = starts.tried;
+      const auto left = rounds.next(limit_.most - tally_.runs() - starts.visits);
+      if (left.empty()) return TraceEnd::kDecided;
       for (const auto state : left) {
         auto sample = trial_.visit(state);
         if (!sample || !check_written(context_.journal, context_.options, context_.sink)) {
@@ -143,8 +144,6 @@ class TraceCampaign {
         if (!*sample) return TraceEnd::kStopped;
         if (const auto end = consume_visit(**std::move(sample))) return *end;
       }
-      // Those whose run was lost are tried again, as long as that helps.
-      if (starts.tried == tried_before) return TraceEnd::kDecided;
     }
   }
 
@@ -270,7 +269,7 @@ class TraceCampaign {
     CampaignProgress progress;
     progress.trace = trace().number;
     progress.done = tally_.runs();
-    progress.needed = std::min(decision_.runs_needed.value_or(max_runs_), max_runs_);
+    progress.needed = std::min(decision_.runs_needed.value_or(limit_.max_runs), limit_.max_runs);
     progress.runs_per_s = elapsed.count() > 0.0 ? static_cast<double>(made) / elapsed.count() : 0.0;
     context_.options.progress(progress);
   }
@@ -310,9 +309,7 @@ class TraceCampaign {
       result.claim =
           "a search found a discrepancy; nothing is claimed about how often there is one";
     } else if (outcome_.discrepancy && outcome_.discrepancy->record.visit) {
-      result.claim =
-          "a run from an initial state that no counted run began in gave a discrepancy; nothing is "
-          "claimed about how often there is one";
+      result.claim = kFoundByVisit;
     } else {
       result.claim =
           claim(tally_, spec_, context_.scenario.comparison(), drawn_starts(result, law_.drawn()));
@@ -364,7 +361,9 @@ class TraceCampaign {
                                      "model admits them");
     }
     if (context_.scenario.comparison() == Comparison::kEveryStep) add_rest_caveat(result);
-    if (!outcome_.discrepancy) add_start_caveats(result.starts, max_runs_, result.caveats);
+    if (!outcome_.discrepancy) {
+      add_start_caveats(result.starts, tally_.runs(), limit_.most, result.caveats);
+    }
     if (is_alone_) {
       result.caveats.push_back(
           "the claim is about this trace by itself: how many there are was not known when it "
@@ -402,7 +401,7 @@ class TraceCampaign {
   LawCounter law_;
   CriterionSpec spec_;
   std::unique_ptr<ConfidenceCriterion> criterion_;
-  std::int64_t max_runs_ = 0;
+  RunLimit limit_;
   double share_ = 1.0;      // of the error, in a claim that leaves other traces out
   bool is_shared_ = false;  // the share is known
   bool is_alone_ = false;   // it is not, and the trace is claimed by itself

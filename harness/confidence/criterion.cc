@@ -294,10 +294,9 @@ std::string loop_claim(const Tally& tally, const CriterionSpec& spec, Comparison
       starts.initial_states == 1
           ? fmt::format("the only initial state{}, {},",
                         starts.has_weights ? " with a weight in `start_weights`" : "", drawn)
-          : fmt::format("{} initial states, {} and {},", starts.initial_states,
-                        starts.has_weights ? "each as likely as its weight in `start_weights`"
-                                           : "each equally likely",
-                        drawn);
+          : fmt::format("{} initial states, {} and {}, then {},", starts.initial_states,
+                        likely_text(starts.has_weights),
+                        tried_text({.all = starts.initial_states, .tried = starts.tried}), drawn);
   return claim_about(tally, spec, fmt::format("executions of the plan from {}", from),
                      fmt::format("leave what the model admits {}", when(comparison)));
 }

@@ -144,15 +144,17 @@ std::string drawn_from(std::string_view region, const DrawnStarts& drawn);
 /// The supposition of every claim about how often runs go wrong, which ends its sentence.
 inline constexpr std::string_view kSupposition = ", supposing that no run affects another";
 
-/// The initial states that executions begin in, and whether they are drawn by weights.
+/// The initial states that executions begin in, how many of them were tried, and whether they are
+/// drawn by weights.
 struct StartLaw {
-  std::int64_t initial_states = 0;
+  std::int64_t initial_states = 0, tried = 0;
   bool has_weights = false;
   DrawnStarts drawn{};
 };
 /// The same of executions of a plan from any of the model's initial states: "with 99 % confidence,
-/// fewer than 5 % of executions from 3 initial states, each equally likely and drawn uniformly from
-/// its region, leave what the model admits at any step (90 clean runs of 90)".
+/// fewer than 5 % of executions of the plan from 3 initial states, each equally likely and each
+/// tried, then drawn uniformly from its region, leave what the model admits at any step (90 clean
+/// runs of 90)".
 std::string loop_claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,
                        const StartLaw& starts);
 

@@ -188,6 +188,7 @@ OrderedJson json_of(const TraceResult& result, const std::vector<ComparedFluents
   if (result.loop) {
     out["initial_states"] = result.loop->initial_states;
     out["initial_states_tried"] = result.starts.tried;
+    if (result.starts.visits > 0) out["initial_states_visits"] = result.starts.visits;
     out["start_law"] = result.loop->has_weights ? "weights" : "uniform";
     out["unfinished"] = result.loop->unfinished;
     if (result.loop->guided) out["chosen_starts"] = *result.loop->guided;

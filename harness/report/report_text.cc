@@ -101,7 +101,9 @@ class TextReport {
       events(trace);
       start(trace);
     }
-    if (!trace.loop && !trace.starts.is_single()) initial_states(trace.starts);
+    if (!trace.starts.is_single()) {
+      initial_states(trace.loop ? "tried" : "start states", trace.starts);
+    }
     if (trace.search) line("searched", search_text(*trace.search, trace.trace->number));
     if (trace.law) law(*trace.law);
     auto runs = fmt::format("{} ({} clean", trace.simulations, trace.clean);
@@ -170,9 +172,9 @@ class TextReport {
   }
 
   /// The other initial states, and what came of each.
-  void initial_states(const StartResult& starts) {
+  void initial_states(std::string_view label, const StartResult& starts) {
     constexpr std::size_t kMostRows = 24;
-    line("start states", tried_text(starts));
+    line(label, tried_text(starts));
     std::vector<std::vector<std::string>> rows;
     for (const auto& [number, counts] : starts.states) {
       if (rows.size() == kMostRows) break;

@@ -8,50 +8,10 @@
 #include <sstream>
 #include <string>
 
-#include "tests/tools/cli_json.h"
+#include "tests/tools/gates.h"
 
 namespace parallax::test {
 namespace {
-
-/// Gates that are shut or not at the start, and a way through that needs the first one open. The
-/// model `wrong.e` forgets that; the world is `world`.
-class Gates : public CliFixture {
- public:
-  explicit Gates(int gates, const std::string& world = "wrong.e") {
-    std::string names = "g0";
-    for (int i = 1; i < gates; ++i) names += ", g" + std::to_string(i);
-    const auto common = "sort gate\ngate " + names +
-                        "\nfluent Shut(gate)\nfluent There()\nfluent Waved()\nevent Go()\n"
-                        "event Wave()\n!HoldsAt(There(),0).\n!HoldsAt(Waved(),0).\n"
-                        "[time] Initiates(Wave(),Waved(),time).\n";
-    write("wrong.e", common + "[time] Initiates(Go(),There(),time).\n");
-    write("truth.e", common + "[time] !HoldsAt(Shut(g0),time) -> Initiates(Go(),There(),time).\n");
-    write("go.lisp", "(perform (an action (type going)))\n(perform (an action (type waving)))\n");
-    write("go.bind",
-          "action going -> Go() ok: There() @t+1 else plan-failure\n"
-          "action waving -> Wave() ok: Waved() @t+1 else plan-failure\n");
-    scenario("gates.yaml", "wrong.e", world, "");
-  }
-  void scenario(const std::string& name, const std::string& model, const std::string& world,
-                const std::string& more) const {
-    write(name, "model: " + model +
-                    "\nplan: go.lisp\nbind: go.bind\nhorizon: 2\n"
-                    "constraints: [\"Happens(Wave(),time-1) | Happens(Go(),time-1) & "
-                    "!HoldsAt(There(),time)\"]\n"
-                    "mapping: {Shut(g): {flag: \"Shut({g})\", drawn: true}}\n"
-                    "criterion: {kind: clean-runs, epsilon: 0.2}\nsimulator: {model: " +
-                    world + "}\n" + more);
-  }
-  /// `more`, as further lines of the scenario, is refused.
-  void refuses(const std::string& more, const std::string& code) const {
-    CAPTURE(more);
-    scenario("refused.yaml", "wrong.e", "wrong.e", more);
-    const auto ran = parallax({"run", "refused.yaml", "--out", "refused"});
-    CAPTURE(ran.err);
-    CHECK(ran.code == 3);
-    CHECK(ran.err.find(code) != std::string::npos);
-  }
-};
 
 TEST_CASE("the same journal for any number of jobs, and wherever a run was interrupted") {
   const Gates cli(5);

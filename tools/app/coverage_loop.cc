@@ -90,7 +90,7 @@ base::Status LoopCoverage::add(const SampleRecord& record, std::uint64_t seed,
   for (const auto& item : plan_.covered_by(*path)) ++hits_[item];
   for (const auto& item : judged.covered) ++hits_[item];
   // The bound is about drawn starts only; behaviours shown from chosen ones still count as shown.
-  const bool drawn = record.path->target.empty();
+  const bool drawn = harness::is_drawn(record);
   if (drawn) {
     for (const auto& one : judged.possible) ++possible_[one];
   }
