@@ -171,8 +171,9 @@ base::Result<Trial> Trial::prepare(TrialBench& bench, CampaignTrace trace) {
 base::Result<std::optional<PreparedStart>> Trial::begin_in(std::int64_t state) {
   auto start = starts_.prepared(state);
   if (!start) return bench_->sink_.already_reported();
-  const bool is_new = *start && state > 1 && announced_.insert(state).second;
-  if (is_new && announce_ && !announce_(*(*start)->plan)) return bench_->sink_.already_reported();
+  if (!*start || state <= 1 || announced_.contains(state)) return start;
+  if (announce_ && !announce_(*(*start)->plan)) return bench_->sink_.already_reported();
+  announced_.insert(state);
   return start;
 }
 
@@ -184,26 +185,34 @@ base::Result<std::optional<PreparedStart>> Trial::begin_of(std::int64_t sample) 
   return begin_in(**state);
 }
 
-/// False when stopped.
-base::Result<bool> Trial::submit_up_to(std::int64_t last) {
-  while (submitted_ < last) {
-    auto start = begin_of(submitted_ + 1);
-    if (!start) return bench_->sink_.already_reported();
-    if (!*start) return false;
-    const auto* known = recorded(++submitted_, DrawPhase::kCertify);
-    // One that ran ahead of a loss, after which states are drawn otherwise, is made anew.
-    if (known != nullptr && known->start_state == (*start)->state) continue;
-    bench_->pool_.submit((*start)->samples, submitted_);
-  }
+/// Gives the workers the sample after the last one that they have. False when stopped.
+base::Result<bool> Trial::submit_one() {
+  auto start = begin_of(submitted_ + 1);
+  if (!start) return bench_->sink_.already_reported();
+  if (!*start) return false;
+  const auto* known = recorded(++submitted_, DrawPhase::kCertify);
+  // One that ran ahead of a loss, after which states are drawn otherwise, is made anew.
+  if (known != nullptr && known->start_state == (*start)->state) return true;
+  bench_->pool_.submit((*start)->samples, submitted_);
   return true;
 }
 
-void Trial::submit_to(std::int64_t last) { failed_ = !submit_up_to(last) || failed_; }
+void Trial::submit_to(std::int64_t last) {
+  while (submitted_ < last && submitted_ + 1 != blocked_) {
+    // An earlier sample may end the trial, so it is too early to report what is wrong here.
+    const auto before = bench_->sink_;
+    const auto done = submit_one();
+    if (done && *done) continue;
+    bench_->sink_ = before;
+    blocked_ = submitted_ + 1;
+  }
+}
 
 void Trial::draw_independently() {
   if (independent_ || starts_.is_single()) return;
   bench_->pool_.abandon();
   submitted_ = next_ - 1;
+  blocked_ = 0;
   independent_ = true;
 }
 
@@ -222,9 +231,11 @@ std::optional<SampleRecord> Trial::result_of(std::int64_t sample, DrawPhase phas
 }
 
 base::Result<std::optional<TrialSample>> Trial::next() {
-  submit_to(next_);
-  if (failed_) return bench_->sink_.already_reported();
-  if (submitted_ < next_) return std::optional<TrialSample>();
+  if (submitted_ < next_) {
+    const auto submitted = submit_one();
+    if (!submitted) return bench_->sink_.already_reported();
+    if (!*submitted) return std::optional<TrialSample>();
+  }
   const auto state = starts_.state_of(next_, independent_);
   if (!state) return bench_->sink_.already_reported();
   if (!*state) return std::optional<TrialSample>();

@@ -186,12 +186,14 @@ class Trial {
   /// ran ahead is forgotten.
   void draw_independently();
 
-  /// Lets the workers simulate all samples up to this one.
+  /// Lets the workers simulate all samples up to this one, or up to one that cannot begin: what is
+  /// wrong with that is reported by `next`, when its turn comes.
   void submit_to(std::int64_t last);
-  /// Waits for the next sample. None when stopped. Reports and fails for a simulator that refuses a
-  /// request (kSimulatorRefused), does not show what is compared (the same), or shows another
-  /// initial state than it was put into (kStartNotTaken of an external one, else
-  /// kMappingNotInverse), and for starts that are always invalid (kStartsRejected).
+  /// Waits for the next sample. None when stopped. Reports what prepare
+  /// reports of its initial state. Reports and fails for a simulator that refuses a request
+  /// (kSimulatorRefused), does not show what is compared (the same), or shows another initial state
+  /// than it was put into (kStartNotTaken of an external one, else kMappingNotInverse), and for
+  /// starts that are always invalid (kStartsRejected).
   base::Result<std::optional<TrialSample>> next();
   /// The same from an initial state that is chosen; what ran ahead is forgotten.
   base::Result<std::optional<TrialSample>> visit(std::int64_t state);
@@ -216,7 +218,7 @@ class Trial {
 
   base::Result<std::optional<PreparedStart>> begin_in(std::int64_t state);
   base::Result<std::optional<PreparedStart>> begin_of(std::int64_t sample);
-  base::Result<bool> submit_up_to(std::int64_t last);
+  base::Result<bool> submit_one();
   base::Result<std::optional<TrialSample>> judged(SampleRecord record);
 
   const SampleRecord* recorded(std::int64_t sample, DrawPhase phase) const;
@@ -233,9 +235,9 @@ class Trial {
   std::function<base::Status(const TracePlan&)> announce_;
   std::set<std::int64_t> announced_;  // numbers of initial states
   bool independent_ = false;
-  bool failed_ = false;         // a start could not be prepared, which was reported
   std::int64_t next_ = 1;       // the sample that `next` waits for
   std::int64_t submitted_ = 0;  // the last one that the workers were given or the journal has
+  std::int64_t blocked_ = 0;    // one that could not begin when it was to run ahead
 };
 
 }  // namespace parallax::harness
