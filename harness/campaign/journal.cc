@@ -340,6 +340,10 @@ const SampleRecord* Journal::find(std::int64_t trace, std::int64_t sample, DrawP
   return found == recorded_.samples.end() ? nullptr : &found->second;
 }
 
+void Journal::know(const std::map<SampleKey, SampleRecord>& samples) {
+  for (const auto& [key, record] : samples) recorded_.samples.insert_or_assign(key, record);
+}
+
 void Journal::write_line(const std::string& line) {
   const std::lock_guard lock(mutex_);
   if (!write_error_.empty()) return;

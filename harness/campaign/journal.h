@@ -97,6 +97,9 @@ class Journal {
   const TraceLine* find(std::int64_t trace, std::int64_t start_state = 0) const;
   const SampleRecord* find(std::int64_t trace, std::int64_t sample, DrawPhase phase) const;
 
+  /// Takes simulations of another journal for recorded ones, too, which are not written here.
+  void know(const std::map<SampleKey, SampleRecord>& samples);
+
   void append(const TraceLine& trace);
   void append(const SampleRecord& record);
   /// The reason why a line could not be written; empty as long as all is well.

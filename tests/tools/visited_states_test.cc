@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -41,6 +42,12 @@ std::vector<Json> samples_of(const CliFixture& cli, const std::string& folder) {
       out.push_back(std::move(object));
     }
   }
+  return out;
+}
+
+std::set<std::int64_t> numbers_of(const std::vector<Json>& samples) {
+  std::set<std::int64_t> out;
+  for (const auto& sample : samples) out.insert(sample.at("sample").get<std::int64_t>());
   return out;
 }
 
@@ -205,6 +212,32 @@ TEST_CASE("a run that is interrupted while initial states are listed leaves no t
   CHECK(lines_of(journal) == 1);
   CHECK(cli.parallax({"run", "gates.yaml", "--out", "out", "--resume"}).code == 4);
   CHECK(cli.read("out/journal.ndjson") == cli.read("whole/journal.ndjson"));
+}
+
+TEST_CASE("further runs draw initial states as the run did, and make none of its own again") {
+  std::vector<std::string> more;
+  int lost = kNever;
+  SUBCASE("in random orders") {}
+  SUBCASE("independently") { more = {"--criterion", "clopper-pearson"}; }
+  SUBCASE("after a search") { more = {"--search", "4"}; }
+  SUBCASE("after a loss") { lost = 0; }
+  for (const std::string seed : {"1", "2", "3", "4"}) {
+    CAPTURE(seed);
+    const Gates cli(2);
+    cli.simulated("gates.yaml", lost, 2, "limits: {max_lost_in_a_row: 50}\n");
+    const auto ran = cli.parallax(with(with(kRun, more), {"--seed", seed}));
+    REQUIRE(ran.code == 1);
+    const auto told = cli.parallax({"explain", "out", "--runs", "12", "--allow-commands"});
+    CAPTURE(told.err);
+    REQUIRE(told.code == 1);
+    const auto known = numbers_of(samples_of(cli, "out"));
+    const auto made = numbers_of(samples_of(cli, "out/further"));
+    CHECK(made.size() >= 10);
+    std::vector<std::int64_t> again;
+    std::set_intersection(known.begin(), known.end(), made.begin(), made.end(),
+                          std::back_inserter(again));
+    CHECK(again.empty());
+  }
 }
 
 }  // namespace

@@ -1,5 +1,9 @@
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "compiler/base/codes/campaigns.h"
@@ -77,13 +81,18 @@ class FurtherRuns {
     if (!folder) return sink.already_reported();
     auto recorded = harness::read_for_continuation(*folder, header, context_.files(), sink);
     if (!recorded) return sink.already_reported();
+    auto journal =
+        harness::Journal::open(*std::move(folder), header, *std::move(recorded),
+                               scenario_.limits.max_lost_in_a_row, context_.files(), sink);
+    if (!journal) return sink.already_reported();
+    std::map<harness::SampleKey, SampleRecord> samples;
     for (const auto& [key, record] : found_.journal.samples) {
-      if (record.status != harness::SampleStatus::kOk) continue;
       if (record.trace != found_.path.id.trace || record.phase != DrawPhase::kCertify) continue;
-      recorded->samples[key] = record;
+      samples.emplace(key, record);
+      last_ = std::max(last_, record.sample);
     }
-    return harness::Journal::open(*std::move(folder), header, *std::move(recorded),
-                                  scenario_.limits.max_lost_in_a_row, context_.files(), sink);
+    (*journal)->know(samples);
+    return journal;
   }
 
   /// None if the trace is not found again: it belongs to a run with other options.
@@ -134,16 +143,24 @@ class FurtherRuns {
                       harness::Trial& trial) {
     const auto started = std::chrono::steady_clock::now();
     std::int64_t failures = 0, clean = 0, made = 0;
+    // Initial states are drawn as the run drew them, so that its own samples are found on record.
+    const auto& asked = found_.journal.header->asked;
+    if (asked.search.runs > 0) trial.begin_after(asked.search.runs);
+    if (asked.criterion == harness::CriterionKind::kClopperPearson) trial.draw_independently();
     while (!is_enough(options_, failures, clean) && made < options_.runs) {
       // Samples on record count as failures or clean runs, but not towards the limit of runs.
       const auto ahead = std::min(options_.jobs == 1 ? 1 : 2 * options_.jobs, options_.runs - made);
-      trial.submit_to(trial.next_sample() + ahead - 1);
-      auto sample = trial.next();
+      const auto next = trial.next_sample();
+      if (next > last_) trial.submit_to(next + ahead - 1);
+      const auto* known = journal.find(found_.path.id.trace, next, DrawPhase::kCertify);
+      auto sample =
+          known != nullptr && known->visit ? trial.visit(known->start_state) : trial.next();
       if (!sample) return context_.sink().already_reported();
       if (!*sample || (*sample)->verdict == harness::SampleVerdict::kLostTooOften) break;
       const auto verdict = (*sample)->verdict;
       const bool is_lost = verdict == harness::SampleVerdict::kLost;
       if (!is_lost) ++(verdict == harness::SampleVerdict::kDiscrepancy ? failures : clean);
+      if (is_lost && !(*sample)->record.visit) trial.draw_independently();
       if (is_recorded((*sample)->record)) continue;
       ++made;
       if (!journal.write_error().empty()) break;
@@ -162,6 +179,7 @@ class FurtherRuns {
   Context& context_;
   EnumeratedTraces feed_;
   FurtherRecords made_;
+  std::int64_t last_ = 0;  // sample of the run
 };
 
 }  // namespace
