@@ -80,11 +80,12 @@ class Estimator {
     trial->draw_independently();
     std::optional<SequentialTest> test;
     if (options_.indifference) test.emplace(*options_.indifference);
-    bool enough = false;
+    bool enough = false, ran_out = false;
     while (complete && !enough && trial->next_sample() <= options_.runs) {
       trial->submit_to(last_wanted(trial->next_sample()));
       const auto sample = trial->next();
       if (!sample) return sink_.already_reported();
+      ran_out = !*sample && trial->ran_out();
       lost_too_often_ = *sample && (*sample)->verdict == SampleVerdict::kLostTooOften;
       complete = *sample && !lost_too_often_;
       if (*sample) {
@@ -98,7 +99,7 @@ class Estimator {
       report_progress(trace.number, trial->next_sample() - 1);
     }
     trial->end();
-    trial->starts().describe(rates.starts, trial->next_sample() - 1);
+    trial->starts().describe(rates.starts, trial->next_sample() - (ran_out ? 0 : 1));
     rates.law = law.result();
     rates.left_out = law.drawn().left_out;
     // Bounds that hold at any time do not depend on runs that were not made.

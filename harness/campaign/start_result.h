@@ -30,6 +30,8 @@ struct StartResult {
   std::int64_t candidates = 0, refused = 0;
   /// Not all are listed and none could be drawn, so that the first stands for all.
   bool only_first = false;
+  /// So few candidates are initial states that drawing ended before enough were simulated.
+  bool ran_out = false;
   std::vector<std::string> unrealisable;       // no start of the world has them, with the reason
   std::map<std::int64_t, StateCounts> states;  // those that were simulated, by number
 

@@ -8,9 +8,10 @@
 //
 // A trace with more states has them drawn: each group of fluents gets one of the values that it can
 // have by itself, until the model has an execution from the whole. The draws are uniform over all
-// initial states of the trace.
+// initial states of the trace. Drawing ends where hardly any candidate is one.
 //
 // Cost: one solver call a state to list them, and a few for the prediction of each one simulated.
+// Drawn ones take at most 1000 calls each, on the average.
 
 #include "harness/campaign/start_states.h"
 
@@ -34,10 +35,9 @@ namespace {
 constexpr std::string_view kOrderStream = "initial states: order";
 constexpr std::string_view kDrawnStream = "initial states: draw";
 
-/// So many candidates in a row that are no initial state of the trace, and nothing can be drawn.
+/// Drawing ends when more candidates were refused than this for each accepted one and one more:
+/// fewer than a thousandth are initial states of the trace.
 constexpr std::int64_t kMostRefused = 1000;
-/// The same once one was accepted, when it is no question of time any more.
-constexpr std::int64_t kMostRefusedLater = 1'000'000;
 
 std::uint64_t stream_key(std::uint64_t trace_key, std::string_view stream) {
   return mix64(trace_key ^ base::fnv1a64(stream));
@@ -197,7 +197,8 @@ std::set<std::string> StartStates::holds(std::int64_t state) const {
 /// sample that begins in it.
 base::Result<std::optional<std::int64_t>> StartStates::accepted(std::int64_t sample) {
   if (const auto known = drawn_.find(sample); known != drawn_.end()) {
-    return std::optional(known->second.state);
+    const auto state = known->second.state;
+    return state == 0 ? std::nullopt : std::optional(state);
   }
   if (parts_.empty()) return std::optional<std::int64_t>(1);  // nothing can be drawn
   const DrawKey key{sources_.campaign_seed, stream_key(trace_key_, kDrawnStream),
@@ -205,7 +206,7 @@ base::Result<std::optional<std::int64_t>> StartStates::accepted(std::int64_t sam
   const CounterRng random(key);
   std::uint64_t next = 0;
   const bool is_first = drawn_.empty();
-  const auto most = is_first ? kMostRefused : kMostRefusedLater;
+  const auto most = kMostRefused * (std::ssize(drawn_) + 1) - refused_;
   for (std::int64_t attempt = 0; attempt < most; ++attempt) {
     State state;
     for (const auto& part : parts_) {
@@ -228,11 +229,20 @@ base::Result<std::optional<std::int64_t>> StartStates::accepted(std::int64_t sam
       number = numbers_.emplace(std::move(state), fresh).first;
     }
     drawn_.emplace(sample, Drawn{number->second, attempt});
+    refused_ += attempt;
     return std::optional(number->second);
   }
-  if (!is_first) return std::optional<std::int64_t>();
-  parts_.clear();
-  return std::optional<std::int64_t>(1);
+  if (is_first) {
+    parts_.clear();
+    return std::optional<std::int64_t>(1);
+  }
+  drawn_.emplace(sample, Drawn{0, most});
+  return std::optional<std::int64_t>();
+}
+
+bool StartStates::ran_out(std::int64_t sample) const {
+  const auto found = drawn_.find(sample);
+  return found != drawn_.end() && found->second.state == 0;
 }
 
 base::Result<PreparedStart> StartStates::prepare(CampaignTrace trace, std::int64_t state) {
@@ -291,10 +301,12 @@ void StartStates::describe(StartResult& result, std::int64_t last) const {
   result.law = sources_.scenario.initial;
   result.unrealisable = unrealisable_;
   result.candidates = result.refused = 0;
+  result.ran_out = false;
   for (const auto& [sample, drawn] : drawn_) {
     if (sample > last) break;
-    result.candidates += drawn.refused + 1;
+    result.candidates += drawn.refused + (drawn.state == 0 ? 0 : 1);
     result.refused += drawn.refused;
+    result.ran_out = drawn.state == 0;
   }
   result.only_first = more_ && parts_.empty();
   result.all = count();

@@ -51,8 +51,11 @@ class StartStates {
 
   /// The state of a drawn sample. As long as nothing was lost, in random orders of all states, one
   /// order after the other; `independent`: drawn by itself, each equally likely or by its weight.
-  /// Weighted and unlisted states are always drawn so. None: stopped.
+  /// Weighted and unlisted states are always drawn so. None: stopped, or drawing ended (`ran_out`).
   base::Result<std::optional<std::int64_t>> state_of(std::int64_t sample, bool independent);
+
+  /// Was no state found for a drawn sample, because hardly any candidate is one?
+  bool ran_out(std::int64_t sample) const;
 
   /// The trace from that state; made at the first call. None: stopped.
   base::Result<std::optional<PreparedStart>> prepared(std::int64_t state);
@@ -97,9 +100,10 @@ class StartStates {
   std::vector<std::vector<State>> parts_;  // if so
   std::map<State, std::int64_t> numbers_;  // likewise, of the drawn ones
   struct Drawn {
-    std::int64_t state = 0, refused = 0;  // refused: candidates before it
+    std::int64_t state = 0, refused = 0;  // 0: none was found; refused: candidates before it
   };
   std::map<std::int64_t, Drawn> drawn_;  // likewise, by sample
+  std::int64_t refused_ = 0;             // before the states that were found
   std::vector<std::string> unrealisable_;
   std::int64_t others_ = 0;  // initial states that are not drawn, by `initial: first`
   std::map<std::int64_t, PreparedStart> prepared_;

@@ -76,6 +76,22 @@ std::string in_states_text(const CampaignResult& result) {
              : fmt::format("in {} initial states of many more", tried);
 }
 
+std::string ran_out_text(const StartResult& starts) {
+  if (!starts.ran_out) return {};
+  const auto found = starts.candidates - starts.refused;
+  return fmt::format(
+      "drawing initial states ended: {} of {} candidates ({}) led to these events", found,
+      starts.candidates,
+      percent_about(static_cast<double>(found) / static_cast<double>(starts.candidates)));
+}
+
+std::string ran_out_text(const CampaignResult& result) {
+  for (const auto& trace : result.traces) {
+    if (trace.starts.ran_out) return ran_out_text(trace.starts);
+  }
+  return {};
+}
+
 std::string tried_text(const StartResult& starts) {
   if (starts.is_single()) return {};
   auto text = fmt::format("{} of {} initial states tried", starts.tried, states_text(starts));
@@ -143,6 +159,8 @@ void add_start_caveats(const StartResult& starts, std::int64_t counted, std::int
     caveats.push_back(fmt::format(
         "there are {} initial states, and none could be drawn: only the first was sampled",
         states_text(starts)));
+  } else if (starts.ran_out) {
+    caveats.push_back(ran_out_text(starts));
   } else {
     caveats.push_back(
         fmt::format("there are {} initial states, too many to try each: {} were drawn",

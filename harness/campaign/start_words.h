@@ -29,6 +29,10 @@ std::string states_text(const StartResult& starts);
 /// "in 7 of 24 initial states", of all traces together; empty where each was tried, and no trace
 /// has others that the scenario leaves out.
 std::string in_states_text(const CampaignResult& result);
+/// "drawing initial states ended: 3 of 2003 candidates (0.2 %) led to these events", of the first
+/// trace whose drawing did; empty where none did.
+std::string ran_out_text(const CampaignResult& result);
+std::string ran_out_text(const StartResult& starts);
 /// "5 of 6 initial states tried", with what was refused; empty where there is one.
 std::string tried_text(const StartResult& starts);
 

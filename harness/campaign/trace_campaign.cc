@@ -73,7 +73,7 @@ class TraceCampaign {
       if (!sample || !check_written(context_.journal, context_.options, context_.sink)) {
         return context_.sink.already_reported();
       }
-      if (!*sample) return finished(TraceEnd::kStopped);
+      if (!*sample) return finished(trial_.ran_out() ? TraceEnd::kRanOut : TraceEnd::kStopped);
       if (const auto end = consume(**std::move(sample))) return finished(*end);
     }
   }
@@ -283,7 +283,8 @@ class TraceCampaign {
     auto& result = outcome_.result;
     outcome_.end = end;
     result.is_decided = end == TraceEnd::kDecided;
-    trial_.starts().describe(result.starts, trial_.next_sample() - 1);
+    trial_.starts().describe(result.starts,
+                             trial_.next_sample() - (end == TraceEnd::kRanOut ? 0 : 1));
     const bool is_covered = result.starts.is_covered();
     result.verdict = end == TraceEnd::kDecided && is_covered ? CampaignVerdict::kNoDiscrepancy
                      : end == TraceEnd::kDiscrepancy         ? CampaignVerdict::kDiscrepancy

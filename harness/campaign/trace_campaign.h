@@ -15,6 +15,7 @@ enum class TraceEnd : std::uint8_t {
   kDecided,  // the criterion says stop
   kDiscrepancy,
   kRunLimit,
+  kRanOut,        // hardly any candidate is an initial state of the trace
   kLostTooOften,  // reported
   kStopped,       // by the stop flag
 };

@@ -177,7 +177,7 @@ base::Result<std::optional<PreparedStart>> Trial::begin_in(std::int64_t state) {
   return start;
 }
 
-/// The start of a drawn sample. None: stopped.
+/// The start of a drawn sample. None: as StartStates::state_of.
 base::Result<std::optional<PreparedStart>> Trial::begin_of(std::int64_t sample) {
   const auto state = starts_.state_of(sample, independent_);
   if (!state) return bench_->sink_.already_reported();
@@ -185,7 +185,8 @@ base::Result<std::optional<PreparedStart>> Trial::begin_of(std::int64_t sample) 
   return begin_in(**state);
 }
 
-/// Gives the workers the sample after the last one that they have. False when stopped.
+/// Gives the workers the sample after the last one that they have. False when stopped, or where
+/// drawing of initial states ended.
 base::Result<bool> Trial::submit_one() {
   auto start = begin_of(submitted_ + 1);
   if (!start) return bench_->sink_.already_reported();

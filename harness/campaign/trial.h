@@ -189,12 +189,14 @@ class Trial {
   /// Lets the workers simulate all samples up to this one, or up to one that cannot begin: what is
   /// wrong with that is reported by `next`, when its turn comes.
   void submit_to(std::int64_t last);
-  /// Waits for the next sample. None when stopped. Reports what prepare
+  /// Waits for the next sample. None when stopped, or where `ran_out` says so. Reports what prepare
   /// reports of its initial state. Reports and fails for a simulator that refuses a request
   /// (kSimulatorRefused), does not show what is compared (the same), or shows another initial state
   /// than it was put into (kStartNotTaken of an external one, else kMappingNotInverse), and for
   /// starts that are always invalid (kStartsRejected).
   base::Result<std::optional<TrialSample>> next();
+  /// Has the next sample no initial state to begin in, because drawing ended?
+  bool ran_out() const { return starts_.ran_out(next_); }
   /// The same from an initial state that is chosen; what ran ahead is forgotten.
   base::Result<std::optional<TrialSample>> visit(std::int64_t state);
   /// Simulates chosen starts, as the samples from number `first` on. They are not draws, and no

@@ -32,6 +32,7 @@ Json starts_json(const StartResult& starts) {
   if (starts.candidates > 0) {
     out["candidates"] = starts.candidates;
     out["refused"] = starts.refused;
+    if (starts.ran_out) out["ran_out"] = true;
   }
   if (!starts.unrealisable.empty()) out["unrealisable"] = starts.unrealisable;
   for (const auto& [number, counts] : starts.states) {

@@ -114,6 +114,7 @@ class Summary {
     if (undecided == 0) {
       return fmt::format("no discrepancy found {}", in_states_text(result_));
     }
+    if (auto text = ran_out_text(result_); !text.empty()) return text;
     if (first.loop && first.loop->unfinished > 0) {
       return fmt::format(
           "{} (of the first: {})",

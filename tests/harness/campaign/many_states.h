@@ -116,6 +116,16 @@ class CellFeed : public TraceFeed {
     return std::pair(base::Known::kNo, std::optional<CampaignTrace>());
   }
 
+  /// Lists none: candidates have box and robot in any of the cells.
+  void draw_from_all(std::size_t cells) {
+    more = true;
+    parts.assign(2, {});
+    for (std::size_t cell = 1; cell <= cells; ++cell) {
+      parts[0].push_back({box(cell)});
+      parts[1].push_back({robot(cell)});
+    }
+  }
+
   CampaignTrace trace(const Cells& cells) const {
     const auto robot = "RobotIn(s" + std::to_string(cells.second) + ")";
     auto out = named_trace(

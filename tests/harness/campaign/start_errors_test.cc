@@ -100,5 +100,36 @@ TEST_CASE("an error in a start that ran ahead comes when it is its turn, if that
   CHECK(failed > 0);
 }
 
+TEST_CASE("a trace whose initial states can hardly be drawn is inconclusive, and says so") {
+  constexpr std::size_t kCells = 64;  // 2 of 4096 candidates are initial states
+  int ended = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    CAPTURE(seed);
+    const auto with_jobs = [&](std::int64_t jobs) {
+      const CellRates rates{std::vector<double>(kCells, 0.0), std::vector<double>(kCells, 0.0)};
+      return end_of(kCells, rates, seed, jobs, [&](base::DiagnosticSink&) {
+        const std::vector<CellFeed::Cells> states = {{1, 1}, {2, 2}};
+        auto feed = std::make_unique<CellFeed>(kCells, states);
+        feed->draw_from_all(kCells);
+        return feed;
+      });
+    };
+    const auto alone = with_jobs(1);
+    CHECK(with_jobs(4) == alone);
+    CHECK(alone.verdict == CampaignVerdict::kInconclusive);
+    const auto says = [&](const std::string& text) {
+      return std::any_of(alone.caveats.begin(), alone.caveats.end(), [&](const auto& caveat) {
+        return caveat.find(text) != std::string::npos;
+      });
+    };
+    const bool is_ended = says("drawing initial states ended");
+    CHECK(is_ended != says("none could be drawn"));
+    if (!is_ended) continue;
+    ++ended;
+    CHECK(alone.simulations < 90);
+  }
+  CHECK(ended > 0);
+}
+
 }  // namespace
 }  // namespace parallax::harness

@@ -193,6 +193,38 @@ TEST_CASE(
   CHECK_FALSE(result.is_covered());
 }
 
+TEST_CASE("drawing ends where hardly any candidate is an initial state, even after a lucky draw") {
+  constexpr std::size_t kCells = 64;  // 2 of 4096 candidates are
+  int lucky = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    CAPTURE(seed);
+    Starts starts(kCells, {{1, 1}, {2, 2}});
+    starts.feed.draw_from_all(kCells);
+    auto& states = starts.make(seed);
+    std::int64_t sample = 1;
+    for (; sample <= 200; ++sample) {
+      const auto state = states.state_of(sample, false);
+      REQUIRE(state.has_value());
+      if (!*state) break;
+    }
+    StartResult result, before;
+    states.describe(result, sample);
+    if (result.only_first) continue;  // not even one was found
+    ++lucky;
+    REQUIRE(sample <= 200);
+    CHECK(states.ran_out(sample));
+    CHECK_FALSE(states.ran_out(sample - 1));
+    CHECK(result.ran_out);
+    CHECK(result.candidates - result.refused == sample - 1);
+    CHECK(result.refused == 1000 * sample);
+    CHECK_FALSE(result.is_covered());
+    states.describe(before, sample - 1);
+    CHECK_FALSE(before.ran_out);
+    CHECK_FALSE(states.state_of(sample, false)->has_value());
+  }
+  CHECK(lucky > 0);
+}
+
 TEST_CASE("a state that no start of the world can have is left out, with the reason") {
   Starts starts(3, CellFeed::boxes(3));
   // The box cannot be in two cells at once.
