@@ -121,6 +121,7 @@ class Campaign {
     auto outcome = run_trace(context, *std::move(trial));
     if (!outcome) return sink_.already_reported();
     result_.simulations += outcome->result.simulations;
+    result_.simulated_s += outcome->result.simulated_s;
     if (outcome->result.search) result_.simulations += outcome->result.search->runs;
     if (!clean_ && !outcome->discrepancy) clean_ = std::move(outcome->first_clean);
     result_.traces.push_back(std::move(outcome->result));

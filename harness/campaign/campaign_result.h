@@ -167,6 +167,9 @@ struct TraceResult {
   std::string left_out;          // the part of the region that is never drawn; empty: none
   std::optional<LawResult> law;  // none: starts are uniform
   std::int64_t simulations = 0;  // run and not rejected before they began; lost ones included
+  /// The sum over all its simulations, with those that count for no claim and repetitions.
+  double simulated_s = 0.0;
+  double wall_s = 0.0;  // depends on the clock
   std::int64_t clean = 0;
   std::int64_t admitted = 0;  // of the clean ones: went otherwise, as the model admits
   std::int64_t lost = 0;
@@ -199,7 +202,7 @@ struct CoverageShare {
   std::int64_t all = 0;
 };
 
-/// Everything a report needs. Only `timing` depends on the clock.
+/// Everything a report needs. Only `timing`, and `wall_s` of traces, depend on the clock.
 struct CampaignResult {
   std::string scenario;  // as the user wrote it
   std::string title;     // what the scenario calls itself; may be empty
@@ -233,6 +236,7 @@ struct CampaignResult {
       second_opinion;                   // of another simulator; null: none was asked
   std::vector<CoverageShare> coverage;  // shares of the items that exist; none: not measured
   std::int64_t simulations = 0;
+  double simulated_s = 0.0;  // of all traces, whether simulated now or read from a journal
   struct Timing {
     double wall_s = 0.0;
     double simulated_s = 0.0;    // by runs made now, not by those read from a journal

@@ -342,6 +342,7 @@ class LoopCampaign {
         consumed_.pop_back();
       }
     }
+    stream_.simulated_s = result_.simulated_s = simulated_s(consumed_);
     if (!interrupted && !result_.failed) recorder_.finish(consumed_);
     recorder_.report(sink_);
     if (!interrupted && !result_.failed) {
@@ -354,6 +355,7 @@ class LoopCampaign {
                           ? CampaignVerdict::kInconclusive
                           : stream_.verdict;
     result_.simulations = stream_.simulations;
+    stream_.wall_s = std::chrono::duration<double>(LoopClock::now() - started_).count();
     result_.traces.push_back(std::move(stream_));
     apply_repetition(result_);
     if (!result_.repetition.holds()) result_.verdict = CampaignVerdict::kInconclusive;

@@ -72,6 +72,14 @@ std::string_view to_string(PathEnd end) {
   return kWords[static_cast<std::size_t>(end)];
 }
 
+double simulated_s(std::span<const SampleRecord> records) {
+  double sum = 0.0;
+  for (const auto& record : records) {
+    for (const auto& outcome : record.outcomes) sum += outcome.sim_time_s;
+  }
+  return sum;
+}
+
 bool is_drawn(const SampleRecord& record) {
   return !record.searched && !record.visit && (!record.path || record.path->target.empty());
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -104,6 +105,9 @@ struct SampleRecord {
   std::optional<ExecutedPath> path;     // of a plan that was executed
   friend bool operator==(const SampleRecord&, const SampleRecord&) = default;
 };
+
+/// The seconds that the simulator says its acts took, of all samples together.
+double simulated_s(std::span<const SampleRecord> records);
 
 /// Was its start drawn? Claims and rates are about such samples alone.
 bool is_drawn(const SampleRecord& record);

@@ -290,6 +290,8 @@ class TraceCampaign {
                      : end == TraceEnd::kDiscrepancy         ? CampaignVerdict::kDiscrepancy
                                                              : CampaignVerdict::kInconclusive;
     result.simulations = tally_.runs();
+    result.simulated_s = simulated_s(outcome_.consumed);
+    result.wall_s = std::chrono::duration<double>(Clock::now() - started_).count();
     const auto bound = certified_bound(tally_, spec_.confidence_level, spec_.share);
     result.certified_level = bound.confidence_level;
     result.certified_epsilon = bound.epsilon;

@@ -166,6 +166,7 @@ OrderedJson json_of(const TraceResult& result, const std::vector<ComparedFluents
                      {"start_shares", json_of(result.start_shares)},
                      {"not_compared", ignored_names(compared)},
                      {"simulations", result.simulations},
+                     {"simulated_s", result.simulated_s},
                      {"guided", result.search ? result.search->runs : 0},
                      {"clean", result.clean},
                      {"admitted", result.admitted},
@@ -286,6 +287,7 @@ OrderedJson json_of(const CampaignResult& result, bool with_timing, bool with_fi
                      {"verdict", to_string(result.verdict)},
                      {"iterations", result.traces.size()},
                      {"simulations", result.simulations},
+                     {"simulated_s", result.simulated_s},
                      {"tool_version", result.tool_version}};
   out["simulator"] = {{"name", result.simulator.name},
                       {"version", result.simulator.version},
@@ -339,7 +341,9 @@ OrderedJson json_of(const CampaignResult& result, bool with_timing, bool with_fi
     const auto& timing = result.timing;
     out["timing"] = {{"wall_s", timing.wall_s},
                      {"runs_made", timing.runs_made},
-                     {"simulated_s", timing.simulated_s}};
+                     {"simulated_s", timing.simulated_s},
+                     {"traces_wall_s", OrderedJson::array()}};
+    for (const auto& trace : result.traces) out["timing"]["traces_wall_s"].push_back(trace.wall_s);
   }
   return out;
 }
