@@ -27,11 +27,13 @@ struct ActionCertificate {
   std::string left_to_simulation;  // why; empty if there are tests
 };
 
-/// The proof of a trace, with all data needed to check it again.
+/// The proof of a trace from one initial state, with all data needed to check it again.
 struct Certificate {
   std::string scenario;
   std::string scenario_hash;  // over all its texts
   std::int64_t trace = 0;
+  std::int64_t initial_state = 0;      // number of the trace's initial state; 0: the only one
+  std::string holds;                   // what tells that one from the others
   std::vector<std::string> variables;  // that are drawn
   StartBox region;
   ProofAssumptions assumptions;

@@ -240,16 +240,20 @@ std::string certificate_json(const Certificate& certificate) {
     }
     actions.push_back(std::move(one));
   }
-  const Json document = {{"kind", kKind},
-                         {"version", 1},
-                         {"status", certificate.stopped ? "stopped" : "ok"},
-                         {"scenario", certificate.scenario},
-                         {"scenario_hash", certificate.scenario_hash},
-                         {"trace", certificate.trace},
-                         {"variables", certificate.variables},
-                         {"region", json_of(certificate.region)},
-                         {"assumptions", std::move(assumptions)},
-                         {"actions", std::move(actions)}};
+  Json document = {{"kind", kKind},
+                   {"version", 1},
+                   {"status", certificate.stopped ? "stopped" : "ok"},
+                   {"scenario", certificate.scenario},
+                   {"scenario_hash", certificate.scenario_hash},
+                   {"trace", certificate.trace}};
+  if (certificate.initial_state > 0) {
+    document["initial_state"] = {{"number", certificate.initial_state},
+                                 {"holds", certificate.holds}};
+  }
+  document["variables"] = certificate.variables;
+  document["region"] = json_of(certificate.region);
+  document["assumptions"] = std::move(assumptions);
+  document["actions"] = std::move(actions);
   return base::json_text(document) + "\n";
 }
 
@@ -265,6 +269,11 @@ std::optional<std::string> read_certificate(std::string_view text, Certificate& 
   certificate.scenario = in.text(document, "scenario");
   certificate.scenario_hash = in.text(document, "scenario_hash");
   certificate.trace = in.count(document, "trace", 1);
+  if (base::json_member(document, "initial_state") != nullptr) {
+    const Json& state = in.object(document, "initial_state");
+    certificate.initial_state = in.count(state, "number", 1);
+    certificate.holds = in.text(state, "holds");
+  }
   certificate.variables = in.texts(document, "variables");
   certificate.region = in.box(document, "region");
   if (certificate.region.size() != certificate.variables.size()) {

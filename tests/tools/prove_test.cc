@@ -4,7 +4,9 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "tests/tools/cli_fixture.h"
 #include "tests/tools/kitchen_copy.h"
@@ -39,19 +41,75 @@ TEST_CASE("prove: the first drive of a plan is decided from the start alone") {
   CAPTURE(ran.err);
   REQUIRE(ran.code == 0);
   const auto document = Json::parse(ran.out);
-  const auto& test = test_of(document, "Drive::is_blocked");
-  CHECK(test["safe"] == 1.0);
-  CHECK(test["assumed"].empty());
-  CHECK(document["simulated"][0]["safe"]["starts"] == 3);
-  CHECK(document["simulated"][0]["safe"]["refused"] == 0);
-  CHECK(document["simulated"][0]["not_as_assumed"] == 0);
+  CHECK(document["initial_states"] == Json{{"all", 6}, {"proved", 6}});
+  REQUIRE(document["states"].size() == 6);
+  std::set<std::string> held;
+  for (const auto& state : document["states"]) {
+    const auto& test = test_of(state, "Drive::is_blocked");
+    CHECK(test["safe"] == 1.0);
+    CHECK(test["assumed"].empty());
+    CHECK(state["simulated"][0]["safe"]["starts"] == 3);
+    CHECK(state["simulated"][0]["safe"]["refused"] == 0);
+    CHECK(state["simulated"][0]["not_as_assumed"] == 0);
+    held.insert(state["initial_state"]["holds"].get<std::string>());
+  }
+  CHECK(held.size() == 6);
+}
+
+TEST_CASE("prove: one initial state, by its number, and a certificate for each") {
+  const CliFixture cli;
+  const std::vector<std::string> prove = {"prove", kitchen("plan3.yaml"), "--action", "0"};
+  const auto with = [&](std::vector<std::string> more) {
+    auto all = prove;
+    all.insert(all.end(), more.begin(), more.end());
+    return cli.parallax(all);
+  };
+  REQUIRE(with({"--out", "a.proof.json"}).code == 0);
+  const auto one = with({"--state", "2", "--json"});
+  REQUIRE(one.code == 0);
+  const auto document = Json::parse(one.out);
+  CHECK(document["initial_states"] == Json{{"all", 6}, {"proved", 1}});
+  const auto certificate = Json::parse(cli.read("a.2.proof.json"));
+  CHECK(certificate["initial_state"] == document["initial_state"]);
+  CHECK(certificate["region"] == document["region"]);
+  CHECK(certificate["region"] != Json::parse(cli.read("a.1.proof.json"))["region"]);
+
+  const auto checked = cli.parallax({"prove", kitchen("plan3.yaml"), "--check", "a.2.proof.json"});
+  CHECK(checked.code == 0);
+  CHECK(says(checked.out, "from " + document["initial_state"]["holds"].get<std::string>() +
+                              " (initial state 2 of 6)"));
+  const auto refuses = [&](const Json& state) {
+    auto forged = certificate;
+    forged["initial_state"] = state;
+    cli.write("forged.json", forged.dump());
+    const auto ran = cli.parallax({"prove", kitchen("plan3.yaml"), "--check", "forged.json"});
+    CAPTURE(state.dump());
+    CHECK(ran.code == 3);
+    CHECK(says(ran.err, "E7127"));
+  };
+  refuses({{"number", 3}, {"holds", document["initial_state"]["holds"]}});
+  refuses({{"number", 7}, {"holds", document["initial_state"]["holds"]}});
+  refuses({{"number", 0}, {"holds", ""}});
+  refuses("the second");
+  // One that names no initial state was made of the first.
+  auto older = Json::parse(cli.read("a.1.proof.json"));
+  older.erase("initial_state");
+  cli.write("older.json", older.dump());
+  CHECK(cli.parallax({"prove", kitchen("plan3.yaml"), "--check", "older.json"}).code == 0);
+  const auto beyond = with({"--state", "7"});
+  CHECK(beyond.code == 2);
+  CHECK(says(beyond.err, "trace 1 has 6 initial states"));
 }
 
 TEST_CASE("prove: a certificate is written, checked, and noticed when it was changed") {
   const CliFixture cli;
-  const std::vector<std::string> prove = {
-      "prove",    kitchen("plan2.yaml"), "--trace", "2",    "--action", "10",
-      "--assume", "dMid.q=0.447:0.452",  "--boxes", "3000", "--out",    "proof.json"};
+  const std::vector<std::string> prove = {"prove",    kitchen("plan2.yaml"),
+                                          "--trace",  "2",
+                                          "--state",  "1",
+                                          "--action", "10",
+                                          "--assume", "dMid.q=0.447:0.452",
+                                          "--boxes",  "3000",
+                                          "--out",    "proof.json"};
   const auto ran = cli.parallax(prove);
   CAPTURE(ran.err);
   CAPTURE(ran.out);
@@ -109,8 +167,8 @@ TEST_CASE("prove: a certificate is written, checked, and noticed when it was cha
 
 TEST_CASE("prove: a certificate's own assumptions are not believed") {
   const CliFixture cli;
-  REQUIRE(cli.parallax({"prove", kitchen("plan2.yaml"), "--trace", "2", "--action", "10", "--boxes",
-                        "40", "--out", "proof.json"})
+  REQUIRE(cli.parallax({"prove", kitchen("plan2.yaml"), "--trace", "2", "--state", "1", "--action",
+                        "10", "--boxes", "40", "--out", "proof.json"})
               .code == 4);
   const auto proof = Json::parse(cli.read("proof.json"));
   const auto check = [&](const Json& document) {
@@ -154,8 +212,8 @@ TEST_CASE("prove: a simulation that contradicts a certificate is told") {
   cli.replace("kitchen/world.yaml", shoulder + "reach_m: [0.25, 0.95]",
               shoulder + "reach_m: [0.25, 0.64]");
   const std::string plan = (cli.folder() / "kitchen/plan2.yaml").string();
-  REQUIRE(cli.parallax({"prove", plan, "--trace", "2", "--action", "0", "--boxes", "1", "--out",
-                        "proof.json"})
+  REQUIRE(cli.parallax({"prove", plan, "--trace", "2", "--state", "1", "--action", "0", "--boxes",
+                        "1", "--out", "proof.json"})
               .code == 4);
   auto proof = Json::parse(cli.read("proof.json"));
   const auto check = [&](const std::string& verdict) {
@@ -185,8 +243,9 @@ TEST_CASE("prove: a simulation that contradicts a certificate is told") {
 
 TEST_CASE("prove: the hand's way down into a drawer, against what simulations show") {
   const CliFixture cli;
-  const auto ran = cli.parallax({"prove", kitchen("plan3.yaml"), "--action", "5", "--boxes", "600",
-                                 "--json", "--simulate", "3", "--assume", "sliding=0.004"});
+  const auto ran =
+      cli.parallax({"prove", kitchen("plan3.yaml"), "--action", "5", "--boxes", "600", "--json",
+                    "--simulate", "3", "--assume", "sliding=0.004", "--state", "1"});
   CAPTURE(ran.err);
   REQUIRE((ran.code == 1 || ran.code == 4));  // no simulation contradicts it
   const auto document = Json::parse(ran.out);
@@ -222,8 +281,8 @@ TEST_CASE("prove: what cannot be proved is refused with its reason") {
     CHECK(says(bad.err, "E0007"));
   }
   cli.write("mine.json", "{\"mine\":1}");
-  const auto kept =
-      cli.parallax({"prove", kitchen("plan3.yaml"), "--action", "0", "--out", "mine.json"});
+  const auto kept = cli.parallax(
+      {"prove", kitchen("plan3.yaml"), "--action", "0", "--state", "1", "--out", "mine.json"});
   CHECK(kept.code == 2);
   CHECK(cli.read("mine.json") == "{\"mine\":1}");
   const auto foreign = cli.parallax({"prove", kitchen("plan3.yaml"), "--check", "mine.json"});

@@ -1,21 +1,18 @@
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
-#include "harness/campaign/trial.h"
 #include "harness/geometry_proof/certificate.h"
 #include "harness/geometry_proof/held_against_simulation.h"
-#include "harness/geometry_proof/proof_assumptions.h"
-#include "harness/robot/ode_simulator.h"
 #include "tools/app/scenario_model.h"
-#include "tools/app/trace_feed.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
+#include "tools/cli/proof_task.h"
 #include "tools/cli/prove_text.h"
 #include "tools/cli/replaceable.h"
 #include "tools/cli/shared_options.h"
@@ -25,139 +22,12 @@ namespace {
 
 struct ProveOptions {
   std::string scenario, out, check;
-  std::int64_t trace = 1, action = -1;
+  std::int64_t trace = 1, state = 0, action = -1;
   std::vector<std::string> assume;
   harness::ProofLimits limits;
   std::int64_t simulate = 0;
   std::uint64_t seed = 1;
 };
-
-/// The trace of the number, or nothing, which was reported.
-std::optional<harness::CampaignTrace> find_trace(const ProveOptions& options,
-                                                 EnumeratedTraces& traces, Invocation& invocation) {
-  std::int64_t last = 0;
-  while (true) {
-    auto trace = traces.next();
-    if (!trace) return std::nullopt;
-    if (!*trace) break;
-    last = (*trace)->number;
-    if (last == options.trace) return std::move(**trace);
-  }
-  if (!invocation.stopped()) {
-    invocation.sink().error_about(codes::kNoSuchTrace, options.scenario, options.trace,
-                                  last == 0   ? "the scenario has none"
-                                  : last == 1 ? "the scenario has only one"
-                                              : fmt::format("the scenario has {}", last));
-  }
-  return std::nullopt;
-}
-
-std::optional<double> whole_number_text(const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value)) {
-    return std::nullopt;
-  }
-  return value;
-}
-
-/// One `--assume NAME=VALUE` or `NAME=LOW:HIGH`; a text that says what is wrong with it.
-std::string assume(const std::string& given, const harness::WorldLayout& layout,
-                   harness::ProofAssumptions& out) {
-  const auto equals = given.find('=');
-  const std::string name = given.substr(0, equals);
-  const std::string value = equals == std::string::npos ? "" : given.substr(equals + 1);
-  for (const auto& field : harness::assumption_fields()) {
-    if (name != field.name) continue;
-    const auto number = whole_number_text(value);
-    const auto why = harness::wrong_assumption(number.value_or(-1.0));
-    if (!why.empty()) return fmt::format("`{}` {}", value, why);
-    out.*field.value = *number;
-    return "";
-  }
-  for (std::size_t i = 0; i < layout.sliders.size(); ++i) {
-    if (name != layout.sliders[layout.sliders.id_at(i)].name + ".q") continue;
-    const auto colon = value.find(':');
-    const auto low = whole_number_text(value.substr(0, colon));
-    const auto high = colon == std::string::npos ? low : whole_number_text(value.substr(colon + 1));
-    if (!low || !high || *low > *high) return fmt::format("`{}` is no range LOW:HIGH", value);
-    out.sliders.emplace_back(name, harness::Bounds1{*low, *high});
-    return "";
-  }
-  return fmt::format(
-      "nothing is called `{}`; there are drift, drift-rad, sliding, sliding-rad, goal, goal-rad, "
-      "parked, held, "
-      "held-rad, held-height, lean, and JOINT.q of a slider",
-      name);
-}
-
-/// A trace and what can be proved of it.
-struct ProofTask {
-  harness::CampaignTrace trace;
-  harness::PreparedTrace prepared;
-  harness::WorldLayout layout;
-  harness::ProofAssumptions assumptions;
-  std::vector<harness::ProofAction> calls;
-  std::vector<harness::ProvableAction> actions;
-};
-
-std::optional<ProofTask> make_task(const ProveOptions& options, const ScenarioModel& loaded,
-                                   Invocation& invocation) {
-  const auto& scenario = loaded.scenario;
-  auto& sink = invocation.sink();
-  if (!scenario.simulator.is_built_in() || !scenario.world.mobile) {
-    sink.error(codes::kNothingToProve, base::SourceRange{scenario.source, 0, 0},
-               scenario.simulator.is_built_in()
-                   ? "its world has no mobile robot"
-                   : "what a simulator of its own does is not known as geometry");
-    return std::nullopt;
-  }
-  const auto& model = loaded.compilation.model;
-  if (!model.has_constraints) {
-    sink.error(codes::kNothingToSimulate, base::SourceRange{scenario.source, 0, 0});
-    return std::nullopt;
-  }
-  EnumeratedTraces traces(model, invocation);
-  auto trace = find_trace(options, traces, invocation);
-  if (!trace) return std::nullopt;
-  harness::OdeSimulator simulator(scenario.world);
-  const harness::ModelFluents fluents(*traces.symbols());
-  auto prepared =
-      harness::prepare_trace(scenario, fluents.ground(), simulator.info(), *trace, sink);
-  if (!prepared) return std::nullopt;
-  if (prepared->sampler.law() != nullptr) {
-    sink.error(codes::kNothingToProve, scenario.sampling_source,
-               "starts are drawn by a law, and proofs are about uniform ones");
-    return std::nullopt;
-  }
-  ProofTask task{
-      *std::move(trace), *std::move(prepared), harness::lay_out(scenario.world), {}, {}, {}};
-  for (const auto& one : options.assume) {
-    const auto fault = assume(one, task.layout, task.assumptions);
-    if (fault.empty()) continue;
-    sink.error_about(codes::kUsage, "--assume " + one, fault);
-    return std::nullopt;
-  }
-  if (const auto fault = harness::wrong_assumptions(task.assumptions, task.layout);
-      !fault.empty()) {
-    sink.error_about(codes::kUsage, "--assume", fault);
-    return std::nullopt;
-  }
-  for (std::size_t i = 0; i < task.prepared.calls.size(); ++i) {
-    const auto& call = task.prepared.calls[i];
-    task.calls.push_back({task.trace.event(i), call.controller, call.arguments});
-  }
-  harness::StartBox whole;
-  const auto variables = harness::drawn_variables(task.prepared.start, whole);
-  if (variables.size() >= harness::AffineForm::kMostVariables) {
-    sink.error(codes::kNothingToProve, scenario.sampling_source,
-               fmt::format("{} variables are drawn, and a proof takes at most {}", variables.size(),
-                           harness::AffineForm::kMostVariables - 1));
-    return std::nullopt;
-  }
-  // In place: what is made refers to the layout and the start.
-  return task;
-}
 
 bool select_actions(const ProveOptions& options, ProofTask& task, Invocation& invocation) {
   if (options.action < 0) return true;
@@ -175,12 +45,15 @@ bool is_certificate(std::string_view head) {
   return head.starts_with("{\"kind\":\"parallax geometry proof\"");
 }
 
-void report(const harness::Certificate& certificate, const ProofTask& task,
-            const std::vector<harness::SimulatedTest>& simulated, Invocation& invocation) {
-  if (invocation.options().json) {
-    return invocation.document(proof_json(certificate, simulated));
-  }
-  invocation.result(proof_text(certificate, task.trace.events(), simulated));
+/// The certificate of an initial state, where there are several: "a.proof.json" becomes
+/// "a.2.proof.json".
+std::string file_of_state(const std::string& out, std::int64_t state) {
+  constexpr std::string_view kEnding = ".proof.json";
+  const auto slash = out.rfind('/');
+  auto at = out.ends_with(kEnding) ? out.size() - kEnding.size() : out.rfind('.');
+  const bool has_ending = at != std::string::npos && (slash == std::string::npos || at > slash + 1);
+  if (!has_ending) at = out.size();
+  return fmt::format("{}.{}{}", out.substr(0, at), state, out.substr(at));
 }
 
 /// True where a simulation contradicts, which is reported.
@@ -195,22 +68,32 @@ bool is_contradicted(const ProveOptions& options,
   return false;
 }
 
-int run_proof(const ProveOptions& options, const ScenarioModel& loaded, Invocation& invocation) {
-  auto task = make_task(options, loaded, invocation);
-  if (!task) return 0;
-  const auto& scenario = loaded.scenario;
-  if (!options.out.empty() &&
-      !check_replaceable(options.out, is_certificate, invocation.files(), invocation.sink())) {
-    return 0;
-  }
-  task->actions = harness::provable_actions(scenario.world, task->layout, task->prepared.start,
+std::vector<harness::SimulatedTest> simulated_tests(
+    const ProveOptions& options, const ScenarioModel& loaded, const ProofTask& task,
+    const std::vector<harness::ProvableAction>& actions, const harness::Certificate& certificate) {
+  if (options.simulate <= 0) return {};
+  return harness::simulate_tests(loaded.scenario.world, task.layout, task.plan->sampler,
+                                 options.seed, options.simulate, task.calls, actions,
+                                 certificate.actions, &stop_flag());
+}
+
+/// Proves the trace from one of its initial states. None: stopped, or it was reported.
+std::optional<ProvedState> prove_state(const ProveOptions& options, const ScenarioModel& loaded,
+                                       ProofTrace& trace, std::int64_t state,
+                                       Invocation& invocation) {
+  auto task = trace.task(state, options.assume);
+  if (!task) return std::nullopt;
+  task->actions = harness::provable_actions(loaded.scenario.world, task->layout, task->start(),
                                             task->calls, task->assumptions);
-  if (!select_actions(options, *task, invocation)) return 0;
-  harness::Certificate certificate;
-  certificate.scenario = scenario.name;
+  if (!select_actions(options, *task, invocation)) return std::nullopt;
+  ProvedState out;
+  auto& certificate = out.certificate;
+  certificate.scenario = loaded.scenario.name;
   certificate.scenario_hash = loaded.sources_hash;
-  certificate.trace = task->trace.number;
-  certificate.variables = harness::drawn_variables(task->prepared.start, certificate.region);
+  certificate.trace = options.trace;
+  certificate.initial_state = task->state();
+  certificate.holds = task->holds;
+  certificate.variables = harness::drawn_variables(task->start(), certificate.region);
   certificate.assumptions = task->assumptions;
   auto limits = options.limits;
   limits.stop = &stop_flag();
@@ -223,29 +106,76 @@ int run_proof(const ProveOptions& options, const ScenarioModel& loaded, Invocati
   certificate.actions = harness::certify(task->actions, limits);
   certificate.stopped = stop_flag().load();
   if (shows) clear_progress();
-  std::vector<harness::SimulatedTest> simulated;
-  if (options.simulate > 0) {
-    simulated = harness::simulate_tests(scenario.world, task->layout, task->prepared.sampler,
-                                        options.seed, options.simulate, task->calls, task->actions,
-                                        certificate.actions, &stop_flag());
+  out.simulated = simulated_tests(options, loaded, *task, task->actions, certificate);
+  return out;
+}
+
+/// The initial states to prove. None: stopped, or it was reported.
+std::optional<std::vector<std::int64_t>> asked_states(const ProveOptions& options,
+                                                      ProofTrace& trace, Invocation& invocation) {
+  auto states = trace.states();
+  if (!states || options.state == 0) return states;
+  const bool only = trace.is_single() && options.state == 1;
+  if (only) return states;
+  if (!trace.has(options.state)) {
+    const auto all = trace.about().all;
+    invocation.sink().error_about(
+        codes::kUsage, fmt::format("--state {}", options.state),
+        trace.is_single() ? fmt::format("trace {} has one initial state", options.trace)
+        : all             ? fmt::format("trace {} has {} initial states", options.trace, *all)
+                          : fmt::format("{} of its initial states were drawn", states->size()));
+    return std::nullopt;
   }
-  if (!options.out.empty() &&
-      !base::write_output(options.out, harness::certificate_json(certificate), invocation.files(),
-                          invocation.sink())) {
-    return 0;
-  }
-  report(certificate, *task, simulated, invocation);
-  bool refuted = false, open = false, any = false;
-  for (const auto& action : certificate.actions) {
-    for (const auto& test : action.tests) {
-      any = true;
-      refuted = refuted || test.refuted > 0.0;
-      open = open || test.open > 0.0;
+  return std::vector<std::int64_t>{options.state};
+}
+
+int run_proof(const ProveOptions& options, const ScenarioModel& loaded, Invocation& invocation) {
+  const auto trace = ProofTrace::find(loaded, options.trace, invocation);
+  if (!trace) return 0;
+  const auto states = asked_states(options, *trace, invocation);
+  if (!states) return 0;
+  const bool one_file = trace->is_single() || options.state > 0;
+  const auto file = [&](std::int64_t state) {
+    return one_file ? options.out : file_of_state(options.out, state);
+  };
+  for (const auto state : *states) {
+    if (!options.out.empty() &&
+        !check_replaceable(file(state), is_certificate, invocation.files(), invocation.sink())) {
+      return 0;
     }
   }
-  if (is_contradicted(options, simulated, invocation)) return 0;
-  if (certificate.stopped || !any) return 4;
-  return refuted ? 1 : open ? 4 : 0;
+  Proved proved{options.trace, trace->events(), trace->about(), options.state > 0, {}};
+  bool refuted = false, open = false, any = false, stopped = false, contradicted = false;
+  for (const auto state : *states) {
+    auto one = prove_state(options, loaded, *trace, state, invocation);
+    if (!one && !stop_flag().load()) return 0;
+    if (!one) {
+      stopped = true;
+      break;
+    }
+    const auto& certificate = one->certificate;
+    if (!options.out.empty() &&
+        !base::write_output(file(state), harness::certificate_json(certificate), invocation.files(),
+                            invocation.sink())) {
+      return 0;
+    }
+    for (const auto& action : certificate.actions) {
+      for (const auto& test : action.tests) {
+        any = true;
+        refuted = refuted || test.refuted > 0.0;
+        open = open || test.open > 0.0;
+      }
+    }
+    stopped = certificate.stopped;
+    contradicted = is_contradicted(options, one->simulated, invocation);
+    proved.states.push_back(*std::move(one));
+    if (stopped || contradicted) break;
+  }
+  invocation.options().json ? invocation.document(proof_json(proved))
+                            : invocation.result(proof_text(proved));
+  if (contradicted) return 0;
+  if (stopped || !any) return 4;
+  return refuted ? 1 : open || !proved.are_all() ? 4 : 0;
 }
 
 int check_proof(const ProveOptions& options, const ScenarioModel& loaded, Invocation& invocation) {
@@ -258,31 +188,35 @@ int check_proof(const ProveOptions& options, const ScenarioModel& loaded, Invoca
     return 0;
   };
   if (const auto fault = harness::read_certificate(*text, certificate)) return misfit(*fault);
-  ProveOptions own = options;
-  own.trace = certificate.trace;
-  auto task = make_task(own, loaded, invocation);
+  const auto trace = ProofTrace::find(loaded, certificate.trace, invocation);
+  if (!trace || !trace->states()) return 0;
+  // One that names no initial state is about the first.
+  if (certificate.initial_state == 0 && !trace->is_single()) {
+    certificate.initial_state = 1;
+    certificate.holds = trace->text(1);
+  }
+  if (!trace->has(certificate.initial_state) ||
+      (!trace->is_single() && trace->text(certificate.initial_state) != certificate.holds)) {
+    return misfit("its initial state is none of the scenario's trace");
+  }
+  auto task = trace->task(certificate.initial_state, options.assume);
   if (!task) return 0;
   if (!options.assume.empty() && certificate.assumptions != task->assumptions) {
     return misfit("it has other assumptions than --assume; without --assume they are printed");
   }
   auto result = harness::check_certificate(
-      certificate, {loaded.scenario.world, task->layout, task->prepared.start, task->calls},
-      &stop_flag());
+      certificate, {loaded.scenario.world, task->layout, task->start(), task->calls}, &stop_flag());
   if (!result.mismatch.empty()) return misfit(result.mismatch);
   if (certificate.scenario_hash != loaded.sources_hash) {
     sink.error_about(codes::kCertificateOfOtherTexts, options.check, certificate.scenario_hash,
                      loaded.sources_hash);
   }
-  std::vector<harness::SimulatedTest> simulated;
-  if (options.simulate > 0) {
-    simulated = harness::simulate_tests(loaded.scenario.world, task->layout, task->prepared.sampler,
-                                        options.seed, options.simulate, task->calls, result.actions,
-                                        certificate.actions, &stop_flag());
-  }
+  const auto simulated = simulated_tests(options, loaded, *task, result.actions, certificate);
+  const auto about = trace->about();
   if (invocation.options().json) {
-    invocation.document(check_json(certificate, result, simulated));
+    invocation.document(check_json(certificate, about, result, simulated));
   } else {
-    invocation.result(check_text(certificate, result, simulated));
+    invocation.result(check_text(certificate, about, result, simulated));
   }
   if (result.wrong == 0 && is_contradicted(options, simulated, invocation)) return 0;
   if (result.wrong > 0) return 1;
@@ -309,18 +243,24 @@ Command prove_command() {
       "  parallax prove scenarios/kitchen/plan2.yaml --trace 2 --assume dMid.q=0.448:0.451 \\\n"
       "    --simulate 100\n"
       "  parallax prove scenarios/kitchen/plan2.yaml --trace 2 --out plan2.proof.json\n"
-      "  parallax prove scenarios/kitchen/plan2.yaml --check plan2.proof.json\n"
+      "  parallax prove scenarios/kitchen/plan2.yaml --check plan2.1.proof.json\n"
       "What is proved of an action holds where the actions before it succeed and leave things as\n"
       "`given` says; --simulate counts how often they do. What is open is left to simulation.\n"
       "--check believes nothing of the file: it prints what is confirmed under which assumptions.\n"
       "Exit codes: 0 every test passes everywhere (--check: something is confirmed, and all that "
       "is\n"
-      "said), 1 refuted somewhere (--check: wrong), 4 some of it open, or nothing to prove.");
+      "said), 1 refuted somewhere (--check: wrong), 4 some of it open, or nothing to prove.\n"
+      "A trace with several initial states is proved from each of the first 64; --out writes a\n"
+      "file for each (NAME.1.proof.json).");
   command.option("scenario", options->scenario, "Scenario file (YAML)").required().file({"yaml"});
   command.heading("What is proved");
   command.option("--trace", options->trace, "Which trace")
       .check(WholeNumber{1, 1'000'000})
       .show_default();
+  command
+      .option("--state", options->state,
+              "Only this initial state of the trace, from 1, by its number in the output")
+      .check(WholeNumber{1, 1'000'000});
   command.option("--action", options->action, "Only this event of the trace, from 0; default: all")
       .check(WholeNumber{0, 1'000'000});
   command
@@ -349,7 +289,7 @@ Command prove_command() {
   command.heading("Comparison with simulations");
   command
       .option("--simulate", options->simulate,
-              "Also simulate so many starts, and compare with the verdicts of their boxes")
+              "Also simulate so many starts of each initial state, and compare with their boxes")
       .check(WholeNumber{0, 1'000'000});
   command.option("--seed", options->seed, "Seed of these starts")
       .check(WholeNumber{0, kMaxSeed})

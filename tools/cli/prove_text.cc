@@ -8,6 +8,7 @@
 
 #include "compiler/base/json.h"
 #include "compiler/base/words.h"
+#include "harness/campaign/start_words.h"
 #include "harness/confidence/rounding.h"
 #include "harness/geometry_proof/proof_assumptions.h"
 
@@ -77,26 +78,37 @@ std::string_view status_of(const harness::CertificateCheck& result) {
   return result.confirmed > 0 ? "ok" : "nothing";
 }
 
-}  // namespace
+using PrettyJson = nlohmann::ordered_json;
 
-std::string proof_json(const harness::Certificate& certificate,
-                       const std::vector<harness::SimulatedTest>& simulated) {
-  auto document = base::parse_ordered_json(harness::certificate_json(certificate));
+PrettyJson state_document(const ProvedState& state) {
+  auto document = base::parse_ordered_json(harness::certificate_json(state.certificate));
   for (auto& action : document["actions"]) {
     for (auto& test : action["tests"]) test.erase("boxes");  // those are for --out
   }
-  if (!simulated.empty()) {
-    auto& all = document["simulated"] = nlohmann::ordered_json::array();
-    for (const auto& test : simulated) all.push_back(simulated_json(test));
+  if (!state.simulated.empty()) {
+    auto& all = document["simulated"] = PrettyJson::array();
+    for (const auto& test : state.simulated) all.push_back(simulated_json(test));
   }
-  return base::json_text(document) + "\n";
+  return document;
 }
 
-std::string proof_text(const harness::Certificate& certificate, std::string_view events,
-                       const std::vector<harness::SimulatedTest>& simulated) {
-  std::string text = fmt::format("trace {}: {}\n", certificate.trace, events);
+PrettyJson states_json(const harness::StartResult& about, std::size_t proved) {
+  PrettyJson out = {{"all", about.all ? PrettyJson(*about.all) : PrettyJson()}, {"proved", proved}};
+  if (!about.unrealisable.empty()) out["unrealisable"] = about.unrealisable;
+  return out;
+}
+
+/// "from TrolleyAt(onWay) (initial state 2 of 6)"; empty where there is one.
+std::string from_text(const harness::Certificate& certificate, const harness::StartResult& about) {
+  if (certificate.initial_state == 0) return {};
+  return fmt::format("from {} (initial state {} of {})", certificate.holds,
+                     certificate.initial_state, harness::states_text(about));
+}
+
+std::string actions_text(const ProvedState& state) {
+  std::string text;
   std::size_t index = 0;
-  for (const auto& action : certificate.actions) {
+  for (const auto& action : state.certificate.actions) {
     text += fmt::format("  {:>2}  {}\n", action.number, action.event);
     if (!action.left_to_simulation.empty()) {
       text += fmt::format("      left to simulation: {}\n", action.left_to_simulation);
@@ -112,14 +124,61 @@ std::string proof_text(const harness::Certificate& certificate, std::string_view
       text += fmt::format("      open     {}  {}\n", open_share(test.open),
                           boxes_text(test, BoxVerdict::kOpen));
       for (const auto& what : test.assumed) text += "      given      " + what + "\n";
-      if (index < simulated.size()) text += simulated_text(simulated[index]);
+      if (index < state.simulated.size()) text += simulated_text(state.simulated[index]);
       ++index;
     }
   }
   return text;
 }
 
-std::string check_json(const harness::Certificate& certificate,
+}  // namespace
+
+bool Proved::are_all() const {
+  if (one_asked || about.is_single()) return true;
+  return about.all && std::ssize(states) + std::ssize(about.unrealisable) >= *about.all;
+}
+
+std::string proof_json(const Proved& proved) {
+  const auto count = proved.states.size();
+  if (proved.about.is_single() || (proved.one_asked && count == 1)) {
+    auto document = state_document(proved.states.front());
+    if (!proved.about.is_single()) document["initial_states"] = states_json(proved.about, count);
+    return base::json_text(document) + "\n";
+  }
+  PrettyJson document = {{"status", proved.are_all() ? "ok" : "incomplete"},
+                         {"trace", proved.trace},
+                         {"events", proved.events},
+                         {"initial_states", states_json(proved.about, count)}};
+  auto& states = document["states"] = PrettyJson::array();
+  for (const auto& state : proved.states) states.push_back(state_document(state));
+  return base::json_text(document) + "\n";
+}
+
+std::string proof_text(const Proved& proved) {
+  std::string text = fmt::format("trace {}: {}\n", proved.trace, proved.events);
+  const auto& about = proved.about;
+  if (!about.is_single()) {
+    const auto count = proved.states.size();
+    text += about.all && std::ssize(proved.states) == *about.all
+                ? fmt::format("proved in each of {} initial states\n", count)
+                : fmt::format("proved in {} of {} initial states\n", count,
+                              harness::states_text(about));
+    constexpr std::size_t kMostShown = 3;
+    for (std::size_t i = 0; i < std::min(kMostShown, about.unrealisable.size()); ++i) {
+      text += "no start realises " + about.unrealisable[i] + "\n";
+    }
+    if (about.unrealisable.size() > kMostShown) {
+      text += fmt::format("no start realises {} more\n", about.unrealisable.size() - kMostShown);
+    }
+  }
+  for (const auto& state : proved.states) {
+    if (!about.is_single()) text += from_text(state.certificate, about) + '\n';
+    text += actions_text(state);
+  }
+  return text;
+}
+
+std::string check_json(const harness::Certificate& certificate, const harness::StartResult& about,
                        const harness::CertificateCheck& result,
                        const std::vector<harness::SimulatedTest>& simulated) {
   nlohmann::ordered_json document = {{"status", status_of(result)},
@@ -127,6 +186,11 @@ std::string check_json(const harness::Certificate& certificate,
                                      {"unconfirmed", result.unconfirmed},
                                      {"wrong", result.wrong},
                                      {"trace", certificate.trace}};
+  if (certificate.initial_state > 0) {
+    document["initial_state"] = {{"number", certificate.initial_state},
+                                 {"holds", certificate.holds}};
+    document["initial_states"] = states_json(about, 1);
+  }
   document["assumptions"] =
       base::parse_ordered_json(harness::certificate_json(certificate))["assumptions"];
   auto& tests = document["tests"] = nlohmann::ordered_json::array();
@@ -145,11 +209,12 @@ std::string check_json(const harness::Certificate& certificate,
   return base::json_text(document) + "\n";
 }
 
-std::string check_text(const harness::Certificate& certificate,
+std::string check_text(const harness::Certificate& certificate, const harness::StartResult& about,
                        const harness::CertificateCheck& result,
                        const std::vector<harness::SimulatedTest>& simulated) {
   std::string text = fmt::format("{} boxes confirmed, {} not confirmed, {} wrong\n",
                                  result.confirmed, result.unconfirmed, result.wrong);
+  if (const auto from = from_text(certificate, about); !from.empty()) text += from + '\n';
   for (std::size_t i = 0; i < result.tests.size(); ++i) {
     const auto& test = result.tests[i];
     text += fmt::format("  {:>2}  {}, {}: confirmed of the start region safe {}, refuted {}\n",

@@ -89,6 +89,7 @@ PageSample page_sample(const SampleRecord& record, const PageData& page) {
   PageSample out;
   out.trace = record.trace;
   out.sample = record.sample;
+  out.start_state = record.start_state;
   out.seed = record.seed;
   out.events = static_cast<std::int64_t>(record.outcomes.size());
   out.retries = record.retries;

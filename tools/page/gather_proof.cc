@@ -161,8 +161,8 @@ void count_starts(const harness::Certificate& certificate, const harness::TestCe
   }
   if (page.closed_loop || page.samples.size() * test.boxes.size() > kMostLookUps) return;
   for (const auto& sample : page.samples) {
-    if (sample.trace != certificate.trace || sample.origin != SampleOrigin::kDrawn ||
-        sample.verdict == SampleVerdict::kNotJudged) {
+    if (sample.trace != certificate.trace || !sample.began_in(certificate.initial_state) ||
+        sample.origin != SampleOrigin::kDrawn || sample.verdict == SampleVerdict::kNotJudged) {
       continue;
     }
     std::vector<double> start;
@@ -202,6 +202,8 @@ std::string misfit_of(const harness::Certificate& certificate, const harness::Jo
 PageProof proof_of(const harness::Certificate& certificate, const PageData& page) {
   PageProof out;
   out.trace = certificate.trace;
+  out.initial_state = certificate.initial_state;
+  out.holds = certificate.holds;
   out.stopped = certificate.stopped;
   for (const auto& action : certificate.actions) {
     auto& shown = out.actions.emplace_back();

@@ -110,6 +110,7 @@ using BodyWay = std::vector<std::array<float, 2>>;
 
 struct PageSample {
   std::int64_t trace = 0, sample = 0;
+  std::int64_t start_state = 0;  // number of the trace's initial state; 0: the only one
   std::uint64_t seed = 0;
   SampleVerdict verdict = SampleVerdict::kNotJudged;
   SampleOrigin origin = SampleOrigin::kDrawn;
@@ -119,6 +120,11 @@ struct PageSample {
   double sim_time_s = 0.0;
   std::vector<double> start;  // by PageData::variables; NaN where there is none
   std::vector<BodyWay> ways;  // by PageData::bodies
+
+  /// Did it begin in the initial state of this number? 0 is the first one.
+  bool began_in(std::int64_t state) const {
+    return start_state == state || (start_state <= 1 && state <= 1);
+  }
 };
 
 struct PageRegion {
@@ -233,7 +239,9 @@ struct PageProofAction {
 struct PageProof {
   std::string file, check;  // its name; the command that confirms it
   std::int64_t trace = 0;
-  bool stopped = false;  // before it was done
+  std::int64_t initial_state = 0;  // number of the trace's initial state; 0: the only one
+  std::string holds;               // what tells that one from the others
+  bool stopped = false;            // before it was done
   std::vector<PageProofAction> actions;
 };
 

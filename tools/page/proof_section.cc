@@ -103,7 +103,7 @@ std::string map_axes(const PageProofMap& map, const PlotAxis& x, const PlotAxis&
 }
 
 /// Where simulations of the trace began.
-std::string map_dots(const PageData& page, std::int64_t trace, const PageProofMap& map,
+std::string map_dots(const PageData& page, const PageProof& proof, const PageProofMap& map,
                      const PlotAxis& x, const PlotAxis& y) {
   const auto column_of = [&](const std::string& name) {
     return static_cast<std::size_t>(std::find(page.variables.begin(), page.variables.end(), name) -
@@ -113,7 +113,8 @@ std::string map_dots(const PageData& page, std::int64_t trace, const PageProofMa
   if (std::max(u, v) >= page.variables.size()) return {};
   std::vector<const PageSample*> samples;
   for (const auto& sample : page.samples) {
-    if (sample.trace == trace && sample.origin == SampleOrigin::kDrawn) samples.push_back(&sample);
+    const bool is_of = sample.trace == proof.trace && sample.began_in(proof.initial_state);
+    if (is_of && sample.origin == SampleOrigin::kDrawn) samples.push_back(&sample);
   }
   std::string out;
   const auto shown = dotted(samples);
@@ -130,7 +131,7 @@ std::string map_dots(const PageData& page, std::int64_t trace, const PageProofMa
   return out;
 }
 
-std::string map_svg(const PageData& page, std::int64_t trace, const PageProofMap& map) {
+std::string map_svg(const PageData& page, const PageProof& proof, const PageProofMap& map) {
   const PlotAxis x{map.x[0], map.x[1], kMapLeft, kMapSide - kMapPad};
   const PlotAxis y{map.y[0], map.y[1], kMapSide - kMapBottom, kMapPad + 14};
   const PageProofPart whole{map.x, map.y, 0.0, 0.0};
@@ -148,7 +149,7 @@ std::string map_svg(const PageData& page, std::int64_t trace, const PageProofMap
     }
     if (part.refuted > 0.0) out += rect(std::string("refuted") + edge, x, y, part, part.refuted);
   }
-  return out + "</g>\n" + map_dots(page, trace, map, x, y) + map_axes(map, x, y) + "</svg>\n";
+  return out + "</g>\n" + map_dots(page, proof, map, x, y) + map_axes(map, x, y) + "</svg>\n";
 }
 
 std::string began_text(const PageProofTest& test) {
@@ -167,7 +168,7 @@ std::string began_text(const PageProofTest& test) {
 }
 
 /// The map of a test with the starts of simulations; empty for a test that is the same everywhere.
-std::string test_figure(const PageData& page, std::int64_t trace, const PageProofAction& action,
+std::string test_figure(const PageData& page, const PageProof& proof, const PageProofAction& action,
                         const PageProofTest& test) {
   if (!test.map) return {};
   const auto words = test.map->is_exact
@@ -176,7 +177,7 @@ std::string test_figure(const PageData& page, std::int64_t trace, const PageProo
                            "depends on others, too";
   return fmt::format("<figure><figcaption><code>{}</code>, {}. {}. {}</figcaption>{}</figure>\n",
                      html_short(action.event), html_short(test.function), words, began_text(test),
-                     map_svg(page, trace, *test.map));
+                     map_svg(page, proof, *test.map));
 }
 
 /// The assumptions of all tests, each once.
@@ -204,17 +205,21 @@ std::string proof_html(const PageData& page, const PageProof& proof) {
   for (std::size_t i = 0; i < proof.actions.size() && i < kMostActions; ++i) {
     rows += action_rows(proof.actions[i]);
     for (const auto& test : proof.actions[i].tests) {
-      figures += test_figure(page, proof.trace, proof.actions[i], test);
+      figures += test_figure(page, proof, proof.actions[i], test);
     }
   }
+  const auto from =
+      proof.initial_state == 0
+          ? std::string()
+          : fmt::format(", initial state {}: {}", proof.initial_state, html_words(proof.holds));
   auto out = fmt::format(
       "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Proofs of trace {0}\">"
-      "<table class=\"flow\"><caption>Trace {0}{1}</caption><thead><tr><th "
+      "<table class=\"flow\"><caption>Trace {0}{3}{1}</caption><thead><tr><th "
       "scope=\"col\">Action</th><th scope=\"col\">Test of its controller</th><th "
       "scope=\"col\">Share of the starts</th><th "
       "scope=\"col\">Safe</th><th scope=\"col\">Refuted</th><th scope=\"col\">Open</th></tr>"
       "</thead><tbody>\n{2}</tbody></table></div>\n",
-      proof.trace, proof.stopped ? " (the search was stopped early)" : "", rows);
+      proof.trace, proof.stopped ? " (the search was stopped early)" : "", rows, from);
   if (proof.actions.size() > kMostActions) {
     out += fmt::format("<p>{} further actions are left out.</p>\n",
                        proof.actions.size() - kMostActions);
