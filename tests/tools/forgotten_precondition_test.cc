@@ -4,8 +4,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -66,6 +69,70 @@ TEST_CASE("each forgotten precondition is found by default, blamed and repaired 
     CHECK(proposal.find(each.event.substr(0, each.event.find('('))) != std::string::npos);
     CHECK(names_one_of(proposal, each.conditions));
   }
+}
+
+/// Adds a further simulation of `explain` to the run as a second discrepancy, as runs have that
+/// were ended while several simulations ran: one from another initial state. Gives its number.
+std::string add_second_discrepancy(const CliFixture& cli, std::int64_t first_state) {
+  std::istringstream further(cli.read("out/further/journal.ndjson"));
+  auto journal = cli.read("out/journal.ndjson");
+  std::map<std::int64_t, std::string> starts;
+  for (std::string line; std::getline(further, line);) {
+    const auto json = Json::parse(line);
+    if (!json.contains("start_state")) continue;
+    const std::int64_t state = json.at("start_state");
+    if (!json.contains("sample")) starts[state] = line;
+    if (!json.contains("sample") || state == first_state || !starts.contains(state)) continue;
+    if (line.find("object-not-held: `can` is not held") == std::string::npos) continue;
+    if (journal.find(starts[state]) == std::string::npos) journal += starts[state] + '\n';
+    cli.write("out/journal.ndjson", journal + line + '\n');
+    auto report = Json::parse(cli.read("out/report.json"));
+    auto second = report.at("discrepancies").at(0);
+    second["sample"] = json.at("sample");
+    second["start_state"] = state;
+    report.at("discrepancies").push_back(second);
+    cli.write("out/report.json", report.dump());
+    return "1." + std::to_string(json.at("sample").get<std::int64_t>());
+  }
+  return {};
+}
+
+TEST_CASE("confirm and threshold tell the initial state, and keep those of several apart") {
+  const CliFixture cli;
+  const auto report = json_of(cli, {"run", ward("weight"), "--out", "out"}, 1);
+  const std::int64_t state = report.at("discrepancies").at(0).at("start_state");
+  json_of(cli, {"explain", "out"}, 1);
+  const auto second = add_second_discrepancy(cli, state);
+  REQUIRE_FALSE(second.empty());
+  const std::vector<std::string> few = {"--repeats", "2", "--runs", "9"};
+  const auto confirm = [&](const std::string& sample) {
+    std::vector<std::string> asked = {"confirm", "out", "--sample", sample};
+    asked.insert(asked.end(), few.begin(), few.end());
+    return json_of(cli, asked, 1);
+  };
+  const auto first_id =
+      "1." + std::to_string(report.at("discrepancies").at(0).at("sample").get<int>());
+  const auto one = confirm(first_id);
+  CHECK(one.at("initial_state").at("number") == state);
+  CHECK(one.at("initial_state").at("all") == 4);
+  CHECK(one.at("initial_state").at("holds").get<std::string>().find("Full()") == 0);
+  const auto other = confirm(second);
+  CHECK(other.at("initial_state").at("number") != state);
+  CHECK(other.at("again").at("bit_equal") == true);
+  CHECK(other.at("other_seeds").at("runs") == 2);
+  // Nothing of the one is taken for the other, or made again.
+  const auto journal = cli.read("out/same_start/journal.ndjson");
+  CHECK(confirm(first_id) == one);
+  CHECK(confirm(second) == other);
+  CHECK(cli.read("out/same_start/journal.ndjson") == journal);
+
+  const auto line = cli.parallax(
+      {"threshold", "out", "--parameter", "can.x", "--points", "2", "--sample", second});
+  CAPTURE(line.out + line.err);
+  CHECK(line.code == 0);
+  CHECK(line.out.find("All starts lie in the initial state of this simulation") !=
+        std::string::npos);
+  CHECK(cli.parallax({"report", "out"}).code == 0);
 }
 
 TEST_CASE("from the first initial state alone none of them need show") {

@@ -39,11 +39,7 @@ base::Result<Bearing> BearingReader::bearing(const harness::SampleRecord& record
   const harness::SampleKey key(record.trace, record.sample, record.phase);
   journal_.places[key] =
       found_.journal.places.at({id.trace, id.sample, harness::DrawPhase::kCertify});
-  auto& sample = journal_.samples[key] = record;
-  // A folder beside the run that repeats this start alone does not number its initial state.
-  const auto& known =
-      found_.journal.samples.at({id.trace, id.sample, harness::DrawPhase::kCertify});
-  if (sample.start_state == 0) sample.start_state = known.start_state;
+  journal_.samples[key] = record;
   const auto path = observed_path(
       found_.loaded, harness::recorded_run(journal_, {record.trace, record.sample}), context_);
   journal_.samples.erase(key);

@@ -59,6 +59,10 @@ base::Result<harness::Persistence> count_failures(const RecordedDiscrepancy& fou
                                                   const std::vector<harness::SampleRecord>& records,
                                                   Context& context);
 
+/// Those of the simulations, seen to their end, that begin as the discrepancy did.
+std::vector<harness::SampleRecord> of_same_start(const RecordedDiscrepancy& found,
+                                                 const std::vector<harness::SampleRecord>& records);
+
 struct FurtherRunsOptions {
   std::int64_t runs = 60;    // limit, counted with those made earlier
   std::int64_t enough = 10;  // enough failures, with as many clean runs or none at all
@@ -99,6 +103,7 @@ base::Result<FurtherRecords> further_executions(const std::string& run_dir,
 /// and with the simulator of half the step (null: there is none), and records that in
 /// RUN_DIR/same_start and RUN_DIR/half_step. Of an executed plan the actions up to where it went
 /// wrong. Reports as further_runs does.
+/// A folder keeps those of several discrepancies apart by their starts.
 inline constexpr const char* kOtherSeeds = "same_start";
 inline constexpr const char* kHalfStep = "half_step";
 struct SameStart {

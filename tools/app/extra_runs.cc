@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <limits>
 #include <utility>
 
 #include "compiler/base/codes/campaigns.h"
@@ -40,6 +41,7 @@ base::Result<std::unique_ptr<ExtraRuns>> ExtraRuns::open(
   std::unique_ptr<ExtraRuns> out(new ExtraRuns(as_run, options, context));
   out->header_ = folder.header;
   out->traces_ = recorded->traces;
+  out->starts_ = recorded->starts;
   auto* self = out.get();
   out->bench_ = std::make_unique<harness::SimulatorBench>(
       as_run.scenario, *out->symbols_, make_simulator,
@@ -88,11 +90,27 @@ base::Result<harness::PreparedTrace> ExtraRuns::prepare_start(const harness::Cam
                                 context_.sink());
 }
 
+const harness::TraceLine* ExtraRuns::find_line(std::int64_t trace, std::int64_t start_state) const {
+  if (start_state > 1) {
+    const auto found = starts_.find({trace, start_state});
+    return found == starts_.end() ? nullptr : &found->second;
+  }
+  const auto found = traces_.find(trace);
+  return found == traces_.end() ? nullptr : &found->second;
+}
+
+void ExtraRuns::announce(const harness::TraceLine& line) {
+  const auto trace = line.trace->number;
+  const bool is_new = line.start_state > 1
+                          ? starts_.emplace(harness::StartKey(trace, line.start_state), line).second
+                          : traces_.emplace(trace, line).second;
+  if (is_new) journal_->append(line);
+}
+
 base::Result<bool> ExtraRuns::make(const Stream& stream, std::int64_t first, std::int64_t last) {
   const auto trace = stream.line == nullptr ? 1 : stream.line->trace->number;
-  if (stream.line != nullptr && traces_.emplace(trace, *stream.line).second) {
-    journal_->append(*stream.line);
-  }
+  if (stream.first != nullptr) announce(*stream.first);
+  if (stream.line != nullptr) announce(*stream.line);
   std::vector<std::int64_t> missing;
   for (auto sample = first; sample <= last; ++sample) {
     if (samples_.contains({trace, sample, DrawPhase::kCertify})) continue;
@@ -159,7 +177,11 @@ base::Result<bool> ExtraRuns::keep(SampleRecord record, const Stream& stream) {
 base::Status ExtraRuns::close() {
   bench_->close();
   std::vector<harness::TraceLine> lines;
-  for (const auto& [number, line] : traces_) lines.push_back(line);
+  for (const auto& [number, line] : traces_) {
+    lines.push_back(line);
+    const auto end = starts_.upper_bound({number, std::numeric_limits<std::int64_t>::max()});
+    for (auto at = starts_.lower_bound({number, 0}); at != end; ++at) lines.push_back(at->second);
+  }
   std::vector<SampleRecord> records;
   for (const auto& [key, record] : samples_) {
     if (record.status != SampleStatus::kRejected) records.push_back(record);  // it is no result

@@ -46,6 +46,8 @@ class ExtraRuns {
 
   /// On record, with those of `make`.
   const std::map<std::int64_t, harness::TraceLine>& traces() const { return traces_; }
+  /// The trace from the initial state of this number, as TraceLine has it. Null: not on record.
+  const harness::TraceLine* find_line(std::int64_t trace, std::int64_t start_state) const;
   const std::map<harness::SampleKey, harness::SampleRecord>& samples() const { return samples_; }
 
   /// A trace in the ids of the scenario's model, which the bench judges by.
@@ -61,6 +63,8 @@ class ExtraRuns {
     std::shared_ptr<const harness::CampaignTrace> start;
     /// Its starts were chosen: one that is not valid, or begins elsewhere, is no error.
     bool chosen = false;
+    /// The trace from its first initial state, where `line` begins in another one.
+    const harness::TraceLine* first = nullptr;
   };
   /// Makes those of the samples that are not on record. False if it was stopped, or the simulator
   /// was lost too often, which was reported. Reports starts and actions that the simulator does not
@@ -77,6 +81,7 @@ class ExtraRuns {
         options_(options),
         context_(context),
         symbols_(std::make_shared<const compiler::SymbolTable>(as_run.compilation.model)) {}
+  void announce(const harness::TraceLine& line);
   base::Result<bool> keep(harness::SampleRecord record, const Stream& stream);
 
   const ScenarioModel& as_run_;
@@ -86,6 +91,7 @@ class ExtraRuns {
   harness::JournalHeader header_;
   std::unique_ptr<harness::Journal> journal_;
   std::map<std::int64_t, harness::TraceLine> traces_;
+  std::map<harness::StartKey, harness::TraceLine> starts_;  // from other initial states
   std::map<harness::SampleKey, harness::SampleRecord> samples_;
   std::int64_t made_ = 0;
   bool rejected_ = false;

@@ -1,4 +1,7 @@
+#include <algorithm>
+#include <iterator>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "compiler/base/hash.h"
@@ -15,17 +18,21 @@ using harness::SampleRecord;
 /// One recorded simulation with other seeds.
 class OtherSeeds final : public harness::SampleMaker {
  public:
-  OtherSeeds(SampleRecord record, std::vector<harness::ActionCall> calls, bool repeats_losses)
-      : record_(std::move(record)), calls_(std::move(calls)), repeats_losses_(repeats_losses) {}
+  /// Sample `first` has the seed seeds[0], and so on.
+  OtherSeeds(SampleRecord record, std::vector<harness::ActionCall> calls, bool repeats_losses,
+             std::int64_t first, std::vector<std::uint64_t> seeds)
+      : record_(std::move(record)),
+        calls_(std::move(calls)),
+        repeats_losses_(repeats_losses),
+        first_(first),
+        seeds_(std::move(seeds)) {}
 
   std::optional<SampleRecord> make(std::int64_t sample, harness::Simulator& simulator,
                                    const std::function<bool()>& abandoned) const override {
     auto record = record_;
     record.sample = sample;
     record.rejected = 0;
-    record.seed =
-        harness::simulator_seed({record_.seed, base::fnv1a64("other seeds"), DrawPhase::kCertify,
-                                 static_cast<std::uint64_t>(sample), 0});
+    record.seed = seeds_[static_cast<std::size_t>(sample - first_)];
     auto again = harness::repeat_sample(calls_, repeats_losses_, record, simulator, abandoned);
     if (!again) return again;
     again->phase = DrawPhase::kCertify;
@@ -50,17 +57,27 @@ class OtherSeeds final : public harness::SampleMaker {
   SampleRecord record_;
   std::vector<harness::ActionCall> calls_;
   bool repeats_losses_;
+  std::int64_t first_;
+  std::vector<std::uint64_t> seeds_;
 };
+
+std::uint64_t other_seed(const SampleRecord& record, std::int64_t number) {
+  return harness::simulator_seed({record.seed, base::fnv1a64("other seeds"), DrawPhase::kCertify,
+                                  static_cast<std::uint64_t>(number), 0});
+}
+
+const SampleRecord& failing_of(const RecordedDiscrepancy& found) {
+  const auto& id = found.path.id;
+  return found.journal.samples.at({id.trace, id.sample, DrawPhase::kCertify});
+}
 
 /// The recorded failure and its actions; of an executed plan, which would go on otherwise, those up
 /// to where it went wrong.
 SampleRecord failing_record(const RecordedDiscrepancy& found,
                             std::vector<harness::ActionCall>& calls) {
-  const auto& id = found.path.id;
-  auto record = found.journal.samples.at({id.trace, id.sample, DrawPhase::kCertify});
+  auto record = failing_of(found);
   if (!record.path) {
     calls = found.journal.line_of(record).calls;
-    record.start_state = 0;  // the folder has the trace from this state only
     return record;
   }
   auto& path = *record.path;
@@ -72,6 +89,18 @@ SampleRecord failing_record(const RecordedDiscrepancy& found,
 }
 
 }  // namespace
+
+std::vector<SampleRecord> of_same_start(const RecordedDiscrepancy& found,
+                                        const std::vector<SampleRecord>& records) {
+  const auto& failing = failing_of(found);
+  std::vector<SampleRecord> out;
+  std::copy_if(records.begin(), records.end(), std::back_inserter(out), [&](const auto& one) {
+    return one.status == harness::SampleStatus::kOk && one.trace == failing.trace &&
+           one.start_state == failing.start_state && one.initial == failing.initial &&
+           one.path.has_value() == failing.path.has_value();
+  });
+  return out;
+}
 
 base::Result<SameStart> same_start_runs(const std::string& run_dir,
                                         const RecordedDiscrepancy& found,
@@ -107,23 +136,37 @@ base::Result<SameStart> same_start_runs(const std::string& run_dir,
     }
     start.points.front() = runtime::point_of_names(holds, {}, *symbols);
     start.symbols = std::move(symbols);
-    const auto maker = std::make_shared<const OtherSeeds>(std::move(record), std::move(calls),
-                                                          harness::may_repeat_losses(info));
-    const bool executed = found.path.executed;
-    std::optional<harness::TraceLine> line;
-    if (!executed) {
-      const harness::SampleKey failing(id.trace, found.path.id.sample, DrawPhase::kCertify);
-      line = found.journal.line_of(found.journal.samples.at(failing));
+    std::set<std::uint64_t> seeds;
+    for (std::int64_t i = 1; i <= options.repeats; ++i) seeds.insert(other_seed(record, i));
+    const auto is_one = [&](const SampleRecord& one) {
+      return one.trace == record.trace && one.start_state == record.start_state &&
+             one.initial == record.initial && seeds.contains(one.seed);
+    };
+    std::int64_t next = 1;
+    auto missing = seeds;
+    for (const auto& [key, one] : (*runs)->samples()) {
+      next = std::max(next, one.sample + 1);
+      if (is_one(one)) missing.erase(one.seed);
     }
-    if (line) line->start_state = 0;
-    const auto made = (*runs)->make(
-        {line ? &*line : nullptr, maker, std::make_shared<const harness::CampaignTrace>(start)}, 1,
-        options.repeats);
-    if (!made) return sink.already_reported();
+    std::vector<std::uint64_t> fresh;
+    for (std::int64_t i = 1; i <= options.repeats; ++i) {
+      if (missing.contains(other_seed(record, i))) fresh.push_back(other_seed(record, i));
+    }
+    const auto last = next + std::ssize(fresh) - 1;
+    const auto maker = std::make_shared<const OtherSeeds>(
+        record, std::move(calls), harness::may_repeat_losses(info), next, std::move(fresh));
+    ExtraRuns::Stream stream{nullptr, maker, std::make_shared<const harness::CampaignTrace>(start)};
+    if (!found.path.executed) {
+      stream.line = &found.journal.line_of(failing_of(found));
+      if (stream.line->start_state > 1) stream.first = &found.journal.traces.at(id.trace);
+    }
+    if (!missing.empty()) {
+      const auto made = (*runs)->make(stream, next, last);
+      if (!made) return sink.already_reported();
+    }
     std::vector<SampleRecord> records;
     for (const auto& [key, one] : (*runs)->samples()) {
-      if (one.sample > options.repeats) continue;  // an earlier call made more
-      if (one.status == harness::SampleStatus::kOk) records.push_back(one);
+      if (is_one(one) && one.status == harness::SampleStatus::kOk) records.push_back(one);
     }
     if (!context.stopped() && !(*runs)->close()) return sink.already_reported();
     const auto counted = count_failures(found, records, context);

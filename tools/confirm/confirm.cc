@@ -94,6 +94,7 @@ base::Result<Confirmation> confirm_discrepancy(const std::string& run_dir,
   out.parameters = tried.parameters();
   out.fixed = tried.fixed();
   out.has_law = tried.has_law();
+  out.place = tried.place();
   out.determinism = tried.simulator().determinism;
   out.repeats_itself = harness::may_repeat_losses(tried.simulator());
   out.repeated = repeat(tried);
@@ -191,6 +192,7 @@ base::Result<Threshold> find_threshold(const std::string& run_dir, const Recorde
   if (!index) return sink.already_reported();
   out.parameter = tried.parameters()[*index];
   out.has_law = tried.has_law();
+  out.place = tried.place();
   out.tolerance = tolerance_of(out.parameter, options.tolerance);
   out.repeats = harness::may_repeat_losses(tried.simulator());
   out.repeated = repeat(tried);

@@ -58,6 +58,7 @@ struct Confirmation {
   std::vector<StartParameter> parameters;
   std::vector<std::string> fixed;  // parameters without a width
   bool has_law = false;            // of starts
+  StartPlace place;
   std::optional<harness::ShrunkStart> shrunk;
   TriedStarts::End end = TriedStarts::End::kNot;
   std::int64_t runs = 0, budget = 0;  // simulations that it took, on record so far
@@ -93,6 +94,7 @@ struct Threshold {
   std::string digest, words;
   bool repeats = false;  // the simulator is deterministic and takes seeds
   bool has_law = false;  // of starts
+  StartPlace place;
   StartParameter parameter;
   double tolerance = 0.0;
   /// The failing start once more; kFails, or there is no scan.

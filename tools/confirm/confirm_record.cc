@@ -65,6 +65,14 @@ Json json_of(const StartParameter& parameter) {
           {"upper", parameter.range.upper},    {"middle", parameter.range.middle()}};
 }
 
+/// Adds the initial state that the starts lie in, where there are several.
+void add_place(const StartPlace& place, Json& out) {
+  if (place.number == 0) return;
+  out["initial_state"] = {{"number", place.number},
+                          {"all", place.all ? Json(*place.all) : Json(nullptr)},
+                          {"holds", place.holds}};
+}
+
 Json confirmation_document(const Confirmation& confirmation) {
   Json out = {{"status", "ok"},
               {"sample", id_text(confirmation.sample)},
@@ -76,6 +84,7 @@ Json confirmation_document(const Confirmation& confirmation) {
               {"finished", confirmation.finished()},
               {"ended_by", end_word(confirmation.end)},
               {"simulations", confirmation.runs}};
+  add_place(confirmation.place, out);
   Json again = nullptr;
   if (confirmation.repeated) {
     again = {{"verdict", to_string(*confirmation.repeated)},
@@ -117,6 +126,7 @@ Json threshold_document(const Threshold& threshold) {
               {"finished", threshold.finished()},
               {"ended_by", end_word(threshold.end)},
               {"simulations", threshold.runs}};
+  add_place(threshold.place, out);
   out.update(json_of(threshold.parameter));
   out["tolerance"] = threshold.tolerance;
   out["again"] = threshold.repeated ? Json(to_string(*threshold.repeated)) : Json(nullptr);

@@ -215,6 +215,16 @@ constexpr const char* kLawWords =
     "The scenario draws starts by a law: a moved one keeps to the ranges of its parameters, not to "
     "what the law ties together or rules out.";
 
+/// The initial state that all starts lie in; empty where there is one.
+std::string place_words(const StartPlace& place) {
+  if (place.number == 0) return {};
+  const auto all = place.all ? std::to_string(*place.all) : std::string("many");
+  return fmt::format(
+      "All starts lie in the initial state of this simulation, {} of {}: {}. Of the others nothing "
+      "is said.",
+      place.number, all, base::printable(place.holds));
+}
+
 std::string end_words(TriedStarts::End end, std::int64_t budget) {
   switch (end) {
     case TriedStarts::End::kNot:
@@ -316,6 +326,7 @@ std::vector<std::string> confirm_sentences(const Confirmation& confirmation) {
                 "more than one.");
     }
   }
+  add(place_words(confirmation.place));
   if (confirmation.has_law && confirmation.shrunk) add(kLawWords);
   add(end_words(confirmation.end, confirmation.budget));
   return out;
@@ -344,6 +355,7 @@ std::string confirm_text(const Confirmation& confirmation, const std::string& ru
                  : "Each border was bisected with all others as told here.\n";
     }
   }
+  if (confirmation.place.number > 0) out += place_words(confirmation.place) + '\n';
   if (confirmation.has_law && confirmation.shrunk) out += std::string(kLawWords) + '\n';
   if (auto words = end_words(confirmation.end, confirmation.budget); !words.empty()) {
     out += words + '\n';
@@ -395,6 +407,7 @@ std::vector<std::string> threshold_sentences(const Threshold& threshold) {
           "simulation, and the border is as sure as these.");
     }
   }
+  if (auto words = place_words(threshold.place); !words.empty()) out.push_back(std::move(words));
   if (threshold.has_law && !threshold.scan.points.empty()) out.emplace_back(kLawWords);
   if (auto words = end_words(threshold.end, threshold.budget); !words.empty()) {
     out.push_back(std::move(words));

@@ -1,6 +1,7 @@
 #include "tools/confirm/tried_starts.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,8 @@
 #include "compiler/base/codes/campaigns.h"
 #include "harness/campaign/judge.h"
 #include "harness/campaign/sample_maker.h"
+#include "harness/campaign/start_states.h"
+#include "tools/app/trace_feed.h"
 
 namespace parallax::tools {
 namespace {
@@ -104,8 +107,7 @@ base::Result<std::unique_ptr<TriedStarts>> TriedStarts::open(
 
 base::Status TriedStarts::prepare_trace() {
   line_ = found_.journal.line_of(like_);
-  line_->start_state = 0;  // the folder has the trace from this state only
-  like_.start_state = 0;
+  if (!find_place()) return context_.sink().already_reported();
   const auto trace = runs_->in_symbols(*line_->trace);
   const auto prepared = runs_->prepare_start(trace);
   if (!prepared) return context_.sink().already_reported();
@@ -116,6 +118,32 @@ base::Status TriedStarts::prepare_trace() {
   start_ = std::make_shared<const harness::CampaignTrace>(std::move(start));
   add_parameters(prepared->sampler);
   return base::Unit{};
+}
+
+/// Tells the start's initial state, with the words that a run has for it.
+base::Status TriedStarts::find_place() {
+  if (like_.start_state == 0) return base::Unit{};
+  place_ = {like_.start_state, std::nullopt,
+            fmt::format("{}", fmt::join(line_->trace->holds(0), " "))};
+  const auto& asked = found_.journal.header->asked;
+  EnumeratedTraces feed(as_run_, context_,
+                        {.all_hits = asked.all_hits, .split_initial = asked.split_initial});
+  const auto& key = line_->trace->key;
+  while (true) {
+    auto trace = feed.next();
+    if (!trace) return context_.sink().already_reported();
+    if (!*trace) return base::Unit{};
+    if ((*trace)->key != key) continue;
+    auto states = harness::StartStates::make({as_run_.scenario, runs_->bench().fluents(),
+                                              simulator(), feed, context_.sink(), runs_->seed()},
+                                             **std::move(trace));
+    if (!states) return context_.sink().already_reported();
+    harness::StartResult about;
+    states->describe(about, 0);
+    place_.all = about.all;
+    if (states->count() && states->has(place_.number)) place_.holds = states->text(place_.number);
+    return base::Unit{};
+  }
 }
 
 base::Result<bool> TriedStarts::prepare_executions() {
@@ -152,9 +180,8 @@ void TriedStarts::add_parameters(const harness::Sampler& sampler) {
 
 /// Takes the recorded starts of the same trace with the seed of the simulation that failed.
 base::Status TriedStarts::take_record() {
-  const auto recorded = runs_->traces().find(found_.path.id.trace);
-  if (line_ && recorded != runs_->traces().end() &&
-      !same_but_for_places(recorded->second, *line_)) {
+  const auto* recorded = line_ ? runs_->find_line(like_.trace, like_.start_state) : nullptr;
+  if (recorded != nullptr && !same_but_for_places(*recorded, *line_)) {
     return context_.sink()
         .error_about(codes::kReplayImpossible, kFolder,
                      "the starts that were tried earlier are of another trace")
@@ -162,7 +189,8 @@ base::Status TriedStarts::take_record() {
   }
   for (const auto& [key, record] : runs_->samples()) {
     next_ = std::max(next_, record.sample + 1);
-    const bool same = record.trace == like_.trace && record.seed == like_.seed && record.searched;
+    const bool same = record.trace == like_.trace && record.start_state == like_.start_state &&
+                      record.seed == like_.seed && record.searched;
     if (same && record.path.has_value() == like_.path.has_value()) {
       numbers_.emplace(record.initial, record.sample);
     }
@@ -232,7 +260,10 @@ base::Status TriedStarts::simulate(const std::vector<State>& starts) {
       like_, line_ ? line_->calls : std::vector<harness::ActionCall>(),
       harness::may_repeat_losses(simulator()), stream_ == nullptr ? nullptr : stream_->samples(),
       first, starts);
-  const auto made = runs_->make({line_ ? &*line_ : nullptr, maker, start_, true}, first, last);
+  const bool other_state = line_ && line_->start_state > 1;
+  const auto made = runs_->make({line_ ? &*line_ : nullptr, maker, start_, true,
+                                 other_state ? &found_.journal.traces.at(like_.trace) : nullptr},
+                                first, last);
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const auto number = first + static_cast<std::int64_t>(i);
     if (runs_->samples().contains({like_.trace, number, like_.phase})) {

@@ -23,6 +23,13 @@ struct StartParameter {
   double failing = 0.0;  // its value in the simulation that failed
 };
 
+/// The initial state of its trace that a discrepancy began in. All starts that are tried lie there.
+struct StartPlace {
+  std::int64_t number = 0;          // among the trace's initial states; 0: it has one only
+  std::optional<std::int64_t> all;  // how many there are; none: more than are listed
+  std::string holds;                // what tells it from the others: "TrolleyAt(onWay)"
+};
+
 struct TriedStartsOptions {
   std::int64_t jobs = 1;
   std::int64_t runs = 200;  // limit on different starts
@@ -51,6 +58,7 @@ class TriedStarts {
   const std::vector<std::string>& fixed() const { return fixed_; }
   /// Starts are drawn by a law, whose ties and conditions moved starts do not keep.
   bool has_law() const { return has_law_; }
+  const StartPlace& place() const { return place_; }
   const harness::SimulatorInfo& simulator() const { return runs_->bench().simulator(); }
   harness::StartPoint failing() const;
 
@@ -69,6 +77,7 @@ class TriedStarts {
   TriedStarts(const RecordedDiscrepancy& found, const ScenarioModel& as_run,
               const TriedStartsOptions& options, Context& context);
   base::Status prepare_trace();
+  base::Status find_place();
   base::Result<bool> prepare_executions();
   base::Status take_record();
   void add_parameters(const harness::Sampler& sampler);
@@ -85,11 +94,12 @@ class TriedStarts {
   std::unique_ptr<ExtraRuns> runs_;
   std::unique_ptr<ClosedLoop> loop_;                     // of an executed plan
   std::unique_ptr<harness::LoopStream> stream_;          // likewise
-  std::optional<harness::TraceLine> line_;               // of a trace
+  std::optional<harness::TraceLine> line_;               // of a trace, from the start's state
   std::shared_ptr<const harness::CampaignTrace> start_;  // that all of them begin in
   std::vector<StartParameter> parameters_;
   std::vector<std::string> fixed_;
   bool has_law_ = false;
+  StartPlace place_;
   std::map<harness::State, std::int64_t> numbers_;  // of simulations
   std::map<harness::State, harness::StartVerdict> verdicts_;
   std::int64_t next_ = 1;

@@ -39,8 +39,7 @@ FurtherRecords records_of(const std::string& folder, const char* name) {
 std::optional<harness::Persistence> persistence(const RecordedDiscrepancy& found,
                                                 const std::string& folder, const char* name,
                                                 Context& context) {
-  auto records = records_of(folder, name).samples;
-  std::erase_if(records, [](const auto& one) { return one.status != harness::SampleStatus::kOk; });
+  const auto records = of_same_start(found, records_of(folder, name).samples);
   if (records.empty()) return std::nullopt;
   const auto counted = count_failures(found, records, context);
   return counted ? std::optional(*counted) : std::nullopt;
