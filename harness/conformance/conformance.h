@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,18 @@ enum class CheckKind : std::uint8_t {
 };
 std::string_view to_string(CheckKind kind);
 
+/// How many of the initial states of a scenario's trace the starts are of.
+struct TriedStates {
+  std::optional<std::int64_t> all;  // none: more than are listed
+  std::int64_t tried = 0;
+};
+
 struct ConformanceOptions {
   ProcessOptions process;  // the command, its limits, the stop flag
   /// Starts and actions to try; empty: from what the simulator says of itself.
   std::vector<State> starts;
+  /// Set where the starts are of a trace with several initial states.
+  std::optional<TriedStates> states;
   std::vector<TriedAction> actions;
   double tolerance = 1e-3;  // what still counts as the same, in the unit of each variable
   /// Asked once it has said what it is; false ends the check.
@@ -61,7 +70,8 @@ struct SupportedClaims {
 
 struct ConformanceReport {
   SimulatorInfo info;
-  std::vector<CheckResult> checks;  // one of each kind
+  std::optional<TriedStates> states;  // as the options have it
+  std::vector<CheckResult> checks;    // one of each kind
   std::vector<ConformanceFinding> findings;
   Repeatability repeatability = Repeatability::kUnknown;
   double largest_deviation = 0.0;   // of an observed start from the asked one

@@ -25,7 +25,9 @@ inline bool is_ready(const Outcome& outcome) { return outcome.status == SimStatu
 class Conformance {
  public:
   explicit Conformance(const ConformanceOptions& options)
-      : options_(options), starts_(options.starts), actions_(options.actions) {}
+      : options_(options), starts_(options.starts), actions_(options.actions) {
+    report_.states = options.states;
+  }
 
   ConformanceReport run();
 

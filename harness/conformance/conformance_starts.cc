@@ -14,6 +14,13 @@ namespace {
 constexpr double kExact = 1e-6;  // starts keep at least so far from borders
 constexpr int kStartTries = 12;
 
+/// " of 6 of 6 initial states"; empty where there is one only.
+std::string states_words(const std::optional<TriedStates>& states) {
+  if (!states) return {};
+  return fmt::format(" of {} of {} initial states", states->tried,
+                     states->all ? std::to_string(*states->all) : std::string("many more"));
+}
+
 }  // namespace
 
 std::optional<double> numeric(const Value& value) {
@@ -99,8 +106,9 @@ void Conformance::check_start(const State& start, const State& seen) {
 
 void Conformance::check_resets() {
   now_ = CheckKind::kReset;
-  for (std::size_t i = 0; i < starts_.size() && i < 2; ++i) {
-    const auto begun = reset(starts_[i], kTriedSeeds[0]);
+  for (const auto& start : starts_) {
+    if (given_up()) break;
+    const auto begun = reset(start, kTriedSeeds[0]);
     if (!begun) continue;
     if (!is_ready(*begun)) {
       fault(fmt::format("the start is {}: {}", to_string(begun->status), begun->reason));
@@ -108,7 +116,7 @@ void Conformance::check_resets() {
     }
     const auto seen = observe();
     if (!seen) continue;
-    check_start(starts_[i], *seen);
+    check_start(start, *seen);
     for (const auto& parameter : report_.info.parameters) {
       if (!seen->contains(parameter.name)) {
         fault(fmt::format("`{}` is declared and not observed", parameter.name));
@@ -130,9 +138,9 @@ void Conformance::check_resets() {
          "time passes between requests, or observing changes something: " + drift.where);
   }
   if (starts_.empty()) return skip(now_, "no start is known");
-  say(now_, fmt::format("{}, largest deviation {:.3g}",
-                        base::counted(std::min<std::int64_t>(2, std::ssize(starts_)), "start"),
-                        report_.largest_deviation));
+  say(now_,
+      fmt::format("{}{}, largest deviation {:.3g}", base::counted(std::ssize(starts_), "start"),
+                  states_words(report_.states), report_.largest_deviation));
 }
 
 /// Checks that a start which the simulator cannot take is refused. check_invalid_starts tries a

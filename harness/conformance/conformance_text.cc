@@ -101,7 +101,7 @@ std::string conformance_json(const ConformanceReport& report,
     claims[key] = report.claims.*member;
   }
   const auto& info = report.info;
-  const ReportJson document{
+  ReportJson document{
       {"status", report.faults() == 0 && report.complete ? "ok" : "faults"},
       {"command", command},
       {"simulator",
@@ -120,6 +120,10 @@ std::string conformance_json(const ConformanceReport& report,
       {"claims", std::move(claims)},
       {"timing",
        {{"round_trip_s", report.round_trip_s}, {"real_time_factor", report.real_time_factor}}}};
+  if (const auto& states = report.states) {
+    document["initial_states"] = {{"all", states->all ? ReportJson(*states->all) : ReportJson()},
+                                  {"tried", states->tried}};
+  }
   return base::json_text(document) + "\n";
 }
 

@@ -9,9 +9,8 @@
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
-#include "compiler/base/hash.h"
 #include "compiler/base/subprocess.h"
-#include "harness/campaign/trial.h"
+#include "harness/campaign/start_states.h"
 #include "harness/conformance/conformance.h"
 #include "tools/app/scenario_check.h"
 #include "tools/app/scenario_model.h"
@@ -83,7 +82,11 @@ void bound_all(double limit_s, harness::ProcessOptions& process) {
       process.act_timeout_s > 0.0 ? std::min(process.act_timeout_s, limit_s) : limit_s;
 }
 
-/// Starts and actions of the scenario's first trace.
+/// At most so many initial states of the trace are tried, with a start each.
+constexpr std::int64_t kMostTriedStates = 10;
+
+/// Starts and actions of the scenario's first trace: two starts from its first initial state, and
+/// one from each other.
 base::Status take_trace(const ScenarioModel& loaded, harness::ConformanceOptions& options,
                         const harness::ModelFluents& fluents, harness::TraceFeed& traces,
                         Invocation& invocation) {
@@ -93,16 +96,33 @@ base::Status take_trace(const ScenarioModel& loaded, harness::ConformanceOptions
     return invocation.sink().error_about(codes::kUsage, loaded.scenario.file.string(),
                                          "the scenario has no trace to take actions from");
   }
-  const auto prepared =
-      harness::prepare_trace(loaded.scenario, fluents.ground(), {}, **trace, invocation.sink());
-  if (!prepared) return invocation.sink().already_reported();
-  for (const auto& call : prepared->calls) {
+  const harness::SimulatorInfo unknown;
+  auto states = harness::StartStates::make(
+      {loaded.scenario, fluents, unknown, traces, invocation.sink(), kDrawSeed}, **trace);
+  if (!states) return invocation.sink().already_reported();
+  for (const auto& call : states->first().calls) {
     options.actions.push_back({call.controller, call.arguments, call.time_limit_s});
   }
-  for (std::uint64_t sample = 1; sample <= 2; ++sample) {
-    options.starts.push_back(prepared->sampler.draw(
-        {kDrawSeed, base::fnv1a64((*trace)->key), harness::DrawPhase::kCertify, sample, 0}));
+  std::uint64_t sample = 0;
+  const auto draw = [&](const harness::TracePlan& plan) {
+    options.starts.push_back(
+        plan.sampler.draw({kDrawSeed, plan.trace_key, harness::DrawPhase::kCertify, ++sample, 0}));
+  };
+  draw(states->first());
+  draw(states->first());
+  if (states->is_single()) return base::Unit{};
+  std::int64_t tried = 1;
+  const auto last = std::min(states->count().value_or(1), kMostTriedStates);
+  for (std::int64_t state = 2; state <= last; ++state) {
+    const auto start = states->prepared(state);
+    if (!start) return invocation.sink().already_reported();
+    if (!*start) break;  // stopped
+    draw(*(*start)->plan);
+    ++tried;
   }
+  harness::StartResult about;
+  states->describe(about, 0);
+  options.states = {about.all, tried};
   return base::Unit{};
 }
 
@@ -141,7 +161,7 @@ int check_with_scenario(const AdapterCheckOptions& options, harness::Conformance
                      "the scenario names no command; add one behind --");
     return 0;
   }
-  EnumeratedTraces traces(loaded->compilation.model, invocation);
+  EnumeratedTraces traces(*loaded, invocation);
   traces.explain_absence_by([&] { return reasons_for_absence(*loaded, invocation); });
   const harness::ModelFluents fluents(*traces.symbols());
   if (!take_trace(*loaded, check, fluents, traces, invocation)) return 0;

@@ -245,6 +245,21 @@ TEST_CASE("the built-in simulator keeps the protocol, too") {
   CHECK(result.out.find("largest deviation 0") != std::string::npos);
 }
 
+TEST_CASE("a start of each initial state of the scenario's trace is tried") {
+  const CliFixture cli;
+  const auto ward = std::string(PARALLAX_SOURCE_DIR) + "/scenarios/ward/trolley.yaml";
+  const std::vector<std::string> check = {"adapter-check",  "--scenario", ward, "--",
+                                          PARALLAX_PROGRAM, "worker",     ward};
+  const auto result = cli.parallax(check);
+  CAPTURE(result.out + result.err);
+  CHECK(result.out.find("4 starts of 3 of 3 initial states, largest deviation ") !=
+        std::string::npos);
+  auto as_json = check;
+  as_json.insert(as_json.begin() + 1, "--json");
+  const auto report = nlohmann::json::parse(cli.parallax(as_json).out);
+  CHECK(report.at("initial_states") == nlohmann::json{{"all", 3}, {"tried", 3}});
+}
+
 TEST_CASE("a simulator is held against a scenario") {
   if (skipped_without_python()) return;
   const PythonFixture python;
