@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,10 +11,13 @@
 
 namespace parallax::harness {
 
+struct CampaignTrace;
+
 /// The results of the simulations from one initial state.
 struct StateCounts {
   std::string text;  // what tells it from the others: "TrolleyAt(onWay)"
   std::int64_t clean = 0, lost = 0, discrepancies = 0;
+  std::shared_ptr<const CampaignTrace> trace = {};  // from it; null in a report that was read
   std::int64_t seen() const { return clean + discrepancies; }
 };
 

@@ -47,7 +47,11 @@ void count_start(const StartStates& states, const TrialSample& sample, StartResu
       break;
   }
   const auto text = [&](std::int64_t state) { return states.text(state); };
-  count_start(sample.record.start_state, outcome, text, result);
+  const auto state = sample.record.start_state;
+  count_start(state, outcome, text, result);
+  if (state == 0) return;
+  auto& trace = result.states.at(state).trace;
+  if (!trace) trace = states.known(state).plan->trace;
 }
 
 DrawnStarts drawn_starts(const TraceResult& result, DrawnStarts drawn) {

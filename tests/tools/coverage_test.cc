@@ -297,5 +297,36 @@ TEST_CASE("coverage: folders are held against their scenario as replay does it")
   CHECK(changed.at("diagnostics").at(0).at("code") == "E7113");
 }
 
+TEST_CASE("axioms count that apply from another initial state of a trace") {
+  const CliFixture cli;
+  cli.write("shut.e",
+            "fluent Shut()\nfluent There()\nfluent Creaked()\nevent Go()\n"
+            "!HoldsAt(There(),0).\n!HoldsAt(Creaked(),0).\n"
+            "[time] Initiates(Go(),There(),time).\n"
+            "[time] HoldsAt(Shut(),time) -> Initiates(Go(),Creaked(),time).\n");
+  cli.write("go.lisp", "(perform (an action (type going)))\n");
+  cli.write("go.bind", "action going -> Go() ok: There() @t+1 else plan-failure\n");
+  cli.write("go.yaml",
+            "model: shut.e\nsimulator: {model: shut.e}\nplan: go.lisp\nbind: go.bind\nhorizon: 1\n"
+            "constraints: \"HoldsAt(There(),time)\"\n"
+            "criterion: {kind: clean-runs, epsilon: 0.2}\n");
+  const auto report = json_of(cli, {"run", "go.yaml", "--out", "out"});
+  const auto coverage = json_of(cli, {"coverage", "out"});
+  const int runs = coverage.at("simulations");
+  const auto& axioms = coverage.at("axioms");
+  REQUIRE(axioms.size() == 2);
+  CHECK(axioms.at(0).at("hits") == runs);
+  // Both initial states were simulated about as often.
+  const int creaked = axioms.at(1).at("hits");
+  CHECK(creaked > runs / 3);
+  CHECK(creaked < runs);
+  CHECK(report.at("coverage") == shares_of(coverage));
+
+  // From the first state alone nothing creaks.
+  cli.write("first.yaml", "include: go.yaml\ninitial: first\n");
+  json_of(cli, {"run", "first.yaml", "--out", "first"});
+  CHECK(json_of(cli, {"coverage", "first"}).at("axioms").at(1).at("hits") == 0);
+}
+
 }  // namespace
 }  // namespace parallax::test

@@ -13,6 +13,7 @@
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/json.h"
 #include "harness/campaign/journal.h"
+#include "harness/campaign/loop_stream.h"
 #include "tools/app/coverage_loop.h"
 #include "tools/app/coverage_model.h"
 #include "tools/app/coverage_plan.h"
@@ -35,7 +36,15 @@ bool same_trace(const harness::CampaignTrace& a, const harness::CampaignTrace& b
 struct ListedTraces {
   std::vector<harness::CampaignTrace> traces;
   bool all = false;
+  std::unique_ptr<EnumeratedTraces> feed;
 };
+
+/// Is it the trace on record? From which of its initial states is asked for later, where it has
+/// several.
+bool is_recorded_trace(const harness::TraceLine& line, const harness::CampaignTrace& trace) {
+  return line.initial_states.empty() ? same_trace(*line.trace, trace)
+                                     : line.trace->key == trace.key;
+}
 
 /// Lists at least the traces of the journal. A journal does not tell whether the run split initial
 /// states or took every hit, so the options are tried until the traces fit. None: the model has no
@@ -46,8 +55,11 @@ std::optional<ListedTraces> list_traces(const compiler::CompiledModel& model,
   const auto last = journal.traces.empty() ? std::int64_t{0} : journal.traces.rbegin()->first;
   for (const bool split : {false, true}) {
     for (const bool all_hits : {false, true}) {
-      EnumeratedTraces feed(model, context, {.all_hits = all_hits, .split_initial = split});
       ListedTraces listed;
+      listed.feed = std::make_unique<EnumeratedTraces>(
+          model, context,
+          runtime::PlanEnumeratorOptions{.all_hits = all_hits, .split_initial = split});
+      auto& feed = *listed.feed;
       bool fits = true;
       while (fits) {
         const auto count = static_cast<std::int64_t>(listed.traces.size());
@@ -64,7 +76,7 @@ std::optional<ListedTraces> list_traces(const compiler::CompiledModel& model,
           break;
         }
         const auto recorded = journal.traces.find((*trace)->number);
-        fits = recorded == journal.traces.end() || same_trace(*recorded->second.trace, **trace);
+        fits = recorded == journal.traces.end() || is_recorded_trace(recorded->second, **trace);
         listed.traces.push_back(**std::move(trace));
       }
       fits = fits && static_cast<std::int64_t>(listed.traces.size()) >= last;
@@ -225,6 +237,32 @@ class Collector {
     return base::Unit{};
   }
 
+  /// The trace of a simulation from its initial state. None: stopped. Reports one that the model
+  /// does not have.
+  base::Result<std::optional<harness::CampaignTrace>> from_state_of(
+      const harness::SampleRecord& record, const harness::CampaignTrace& trace,
+      const harness::JournalText& journal, const ScenarioModel& loaded, EnumeratedTraces& feed) {
+    const auto& recorded = *journal.line_of(record).trace;
+    const auto symbols = feed.symbols();
+    const harness::ModelFluents known(*symbols);
+    auto fluents = harness::compared_fluents(loaded.scenario, known);
+    std::sort(fluents.begin(), fluents.end());
+    std::set<std::string> holds;
+    for (const auto name : recorded.holds(0)) holds.emplace(name);
+    std::vector<compiler::FluentId> state;
+    for (const auto fluent : fluents) {
+      if (holds.contains(symbols->name(fluent))) state.push_back(fluent);
+    }
+    auto found = feed.from(trace, fluents, state);
+    if (!found) return context_.sink().already_reported();
+    if (found->first == base::Known::kUndecided) return std::optional<harness::CampaignTrace>();
+    if (!found->second || !same_trace(recorded, *found->second)) {
+      return context_.sink().error(codes::kForeignJournalLine, journal.line_place_of(record),
+                                   "the model has no such trace from this initial state");
+    }
+    return std::move(found->second);
+  }
+
   base::Status add_traces(const ScenarioModel& loaded, const RunRecord& run) {
     auto& sink = context_.sink();
     const auto& journal = run.journal;
@@ -258,19 +296,43 @@ class Collector {
       for (const auto& key : plan->all()) list(key);
     }
     coverage_.all_traces = coverage_.all_traces && listed->all;
-    std::map<std::int64_t, std::int64_t> simulated;  // by trace
-    for (const auto& key : to_count(run)) ++simulated[std::get<0>(key)];
+    // The simulations by trace and initial state, with one of each.
+    struct Simulated {
+      std::int64_t hits = 0;
+      const harness::SampleRecord* one = nullptr;
+    };
+    std::map<harness::StartKey, Simulated> simulated;
+    for (const auto& key : to_count(run)) {
+      const auto& record = journal.samples.at(key);
+      auto& entry = simulated[{record.trace, record.start_state}];
+      ++entry.hits;
+      entry.one = &record;
+    }
     for (const auto& trace : listed->traces) {
       if (context_.stopped()) break;
-      auto covered = model.covered_by(trace);
-      if (plan) covered.merge(plan->covered_by(plan->path_of(trace)));
-      covered.insert({CoverageGroup::kTraces, name, 1, 1, trace.key});
-      const auto found = simulated.find(trace.number);
-      const auto hits = found == simulated.end() ? 0 : found->second;
-      coverage_.simulations += hits;
-      for (const auto& key : covered) {
+      const auto covered_by = [&](const harness::CampaignTrace& from) {
+        auto covered = model.covered_by(from);
+        if (plan) covered.merge(plan->covered_by(plan->path_of(from)));
+        covered.insert({CoverageGroup::kTraces, name, 1, 1, trace.key});
+        return covered;
+      };
+      auto any = covered_by(trace);
+      for (auto at = simulated.lower_bound({trace.number, 0});
+           at != simulated.end() && at->first.first == trace.number; ++at) {
+        std::optional<harness::CampaignTrace> other;
+        if (at->first.second > 0) {
+          auto from = from_state_of(*at->second.one, trace, journal, loaded, *listed->feed);
+          if (!from) return sink.already_reported();
+          if (!*from) break;  // stopped
+          other = **std::move(from);
+        }
+        auto covered = covered_by(other ? *other : trace);
+        coverage_.simulations += at->second.hits;
+        for (const auto& key : covered) list(key).hits += at->second.hits;
+        any.merge(covered);
+      }
+      for (const auto& key : any) {
         auto& count = list(key);
-        count.hits += hits;
         if (is_new) ++*count.traces;
       }
     }

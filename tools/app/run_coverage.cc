@@ -50,8 +50,14 @@ Shares of_traces(const ScenarioModel& loaded, const harness::CampaignResult& res
   for (const auto& one : result.traces) {
     const bool searched = one.search && one.search->runs > one.search->lost;
     if (one.simulations == one.lost && !searched) continue;
-    covered.merge(model.covered_by(*one.trace));
-    if (plan) covered.merge(plan->covered_by(plan->path_of(*one.trace)));
+    const auto cover = [&](const harness::CampaignTrace& trace) {
+      covered.merge(model.covered_by(trace));
+      if (plan) covered.merge(plan->covered_by(plan->path_of(trace)));
+    };
+    if (one.starts.states.empty()) cover(*one.trace);
+    for (const auto& [number, state] : one.starts.states) {
+      if (state.seen() > 0) cover(*state.trace);
+    }
   }
   all.insert(covered.begin(), covered.end());
   return shares(all, covered);
