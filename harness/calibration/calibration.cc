@@ -44,6 +44,7 @@ std::vector<CalibratedWorld> calibrated_worlds() {
   }
   add(SyntheticKind::kStates, "three initial states");
   add(SyntheticKind::kLosingStates, "three initial states, losses");
+  add(SyntheticKind::kWeightedStates, "three initial states, weights");
   add(SyntheticKind::kTwoTraces, "two traces, all-traces", Family::kAllTraces);
   add(SyntheticKind::kOneSound, "two traces, one sound", Family::kAllTraces);
   add(SyntheticKind::kOneFailing, "two traces, one left out", Family::kAllTraces);

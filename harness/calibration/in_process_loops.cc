@@ -13,9 +13,10 @@ constexpr std::int64_t kLeastRuns = 300;  // as campaigns have where nothing is 
 
 constexpr std::uint64_t kOrderOfStates = 100, kOneState = 10'000;  // numbers of draws
 
-/// The initial state of a run, as StartStates draws it: in random orders of all states until a run
-/// was lost, then by itself.
-std::int64_t state_of_run(std::uint64_t campaign_seed, std::int64_t run, bool independent) {
+/// The initial state of a run, from 0, as StartStates draws it: in random orders of all states
+/// until a run was lost, then by itself; by its weight where they have weights.
+std::size_t state_of_run(SyntheticKind kind, std::uint64_t campaign_seed, std::int64_t run,
+                         bool independent) {
   const auto states = static_cast<std::uint64_t>(kSyntheticStates);
   const auto position = static_cast<std::uint64_t>(run) - 1;
   const auto chosen = [&](const CounterRng& rng, std::uint64_t draw, std::uint64_t of) {
@@ -25,11 +26,19 @@ std::int64_t state_of_run(std::uint64_t campaign_seed, std::int64_t run, bool in
   const auto stream = [&](std::uint64_t key, std::uint64_t number) {
     return CounterRng({.campaign_seed = campaign_seed, .trace_key = key, .sample = number});
   };
-  if (independent) {
-    return static_cast<std::int64_t>(chosen(stream(kOneState, position), 0, states));
+  if (kind == SyntheticKind::kWeightedStates) {
+    const auto& weights = kSyntheticWeights;
+    double left = stream(kOneState, position).uniform(0) *
+                  std::accumulate(weights.begin(), weights.end(), 0.0);
+    std::size_t state = 0;
+    while (state + 1 < weights.size() && (left -= weights[state]) >= 0.0) ++state;
+    return state;
   }
-  std::array<std::int64_t, kSyntheticStates> order{};
-  std::iota(order.begin(), order.end(), std::int64_t{0});
+  if (independent) {
+    return static_cast<std::size_t>(chosen(stream(kOneState, position), 0, states));
+  }
+  std::array<std::size_t, kSyntheticStates> order{};
+  std::iota(order.begin(), order.end(), std::size_t{0});
   const auto rng = stream(kOrderOfStates, position / states);
   for (std::uint64_t left = states; left > 1; --left) {
     std::swap(order[left - 1], order[chosen(rng, left, left)]);
@@ -74,7 +83,9 @@ struct TraceLoop {
       const double draw = rng.uniform(0), x = rng.uniform(1);
       double p = out.probability;
       if (has_states(world.kind)) {
-        p *= static_cast<double>(state_of_run(campaign_seed, runs, looks_once || tally.lost() > 0));
+        const bool independent = looks_once || tally.lost() > 0;
+        p *= synthetic_factor(world.kind,
+                              state_of_run(world.kind, campaign_seed, runs, independent));
       }
       if (trace == 2 ? draw >= 1.0 - p : draw < p) {
         out.is_discrepancy = !is_lost_instead();

@@ -41,8 +41,11 @@ constexpr std::array<const char*, kSyntheticStates> kStartFluents = {
 /// One push for each trace, from one initial state or from any of them.
 class SyntheticTraces final : public TraceFeed {
  public:
-  SyntheticTraces(std::int64_t count, bool has_states)
-      : count_(count), has_states_(has_states), symbols_(table()) {}
+  SyntheticTraces(std::int64_t count, SyntheticKind kind)
+      : count_(count),
+        has_states_(has_states(kind)),
+        has_weights_(kind == SyntheticKind::kWeightedStates),
+        symbols_(table()) {}
 
   base::Result<std::optional<CampaignTrace>> next() override {
     if (given_ == count_) return std::optional<CampaignTrace>();
@@ -56,6 +59,7 @@ class SyntheticTraces final : public TraceFeed {
     if (!has_states_) return TraceFeed::starts(trace, fluents);
     TraceStarts out;
     for (const auto* fluent : kStartFluents) out.states.push_back({*symbols_->fluent(fluent)});
+    if (has_weights_) out.weights.assign(kSyntheticWeights.begin(), kSyntheticWeights.end());
     return std::optional(std::move(out));
   }
   base::Result<std::pair<base::Known, std::optional<CampaignTrace>>> from(
@@ -89,7 +93,7 @@ class SyntheticTraces final : public TraceFeed {
   }
 
   std::int64_t count_, given_ = 0;
-  bool has_states_;
+  bool has_states_, has_weights_;
   runtime::Symbols symbols_;
 };
 
@@ -128,6 +132,7 @@ base::Result<CalibrationCell> protocol_cell(const CalibratedCriterion& criterion
   if (!scenario) return sink.already_reported();
   scenario->criterion = criterion.spec;
   scenario->criterion.family = world.family.value_or(Family::kAllTraces);
+  if (world.kind == SyntheticKind::kWeightedStates) scenario->initial = Initial::kWeights;
   std::int64_t runs = 0;
   while (cell.loops < loops && (options.stop == nullptr || !options.stop->load())) {
     // Files of one loop alone, so that nothing grows with their number.
@@ -147,7 +152,7 @@ base::Result<CalibrationCell> protocol_cell(const CalibratedCriterion& criterion
                              campaign.seed, folder.path() / "draws", true});
     process.command.insert(process.command.end(), more.begin(), more.end());
     process.stop = options.stop;
-    SyntheticTraces traces(count, has_states(world.kind));
+    SyntheticTraces traces(count, world.kind);
     const auto result = run_campaign(
         *scenario, traces, [&] { return std::make_unique<ProcessSimulator>(process); }, campaign,
         own, told);

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -92,7 +93,12 @@ bool SyntheticSimulator::goes_wrong(std::string_view action) {
       return !second || x < p;
     case SyntheticKind::kStates:
     case SyntheticKind::kLosingStates:
-      return x < p * std::floor(start_m_ - kSyntheticStart_m);
+    case SyntheticKind::kWeightedStates: {
+      constexpr auto kLast = static_cast<double>(kSyntheticStates - 1);
+      const auto state =
+          static_cast<std::size_t>(std::clamp(start_m_ - kSyntheticStart_m, 0.0, kLast));
+      return x < p * synthetic_factor(options_.kind, state);
+    }
     case SyntheticKind::kTwoTraces:
       break;
   }

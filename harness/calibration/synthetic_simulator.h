@@ -25,15 +25,25 @@ enum class SyntheticKind : std::uint8_t {
   kOneFailing,    // as by start in the second trace; the first always goes wrong
   kStates,        // three initial states; p is the mean, and none, as much and twice that is theirs
   kLosingStates,  // likewise, and then it says that it is lost
+  kWeightedStates,  // three initial states of weights; p is the mean by them, and without them
 };
-inline constexpr std::array<std::string_view, 12> kSyntheticWords = {
-    "by-start", "by-seed",    "noisy",     "refusals",    "losses", "crash-first",
-    "slow",     "two-traces", "one-sound", "one-failing", "states", "losing-states"};
+inline constexpr std::array<std::string_view, 13> kSyntheticWords = {
+    "by-start",   "by-seed",   "noisy",       "refusals", "losses",        "crash-first",    "slow",
+    "two-traces", "one-sound", "one-failing", "states",   "losing-states", "weighted-states"};
 constexpr bool has_states(SyntheticKind kind) {
-  return kind == SyntheticKind::kStates || kind == SyntheticKind::kLosingStates;
+  return kind == SyntheticKind::kStates || kind == SyntheticKind::kLosingStates ||
+         kind == SyntheticKind::kWeightedStates;
 }
 /// So many initial states they have, a metre apart.
 inline constexpr std::int64_t kSyntheticStates = 3;
+/// The weights of those of kWeightedStates.
+inline constexpr std::array<double, kSyntheticStates> kSyntheticWeights = {2.0, 1.0, 1.0};
+/// How many times as likely as in the mean a run from this initial state, from 0, goes wrong.
+constexpr double synthetic_factor(SyntheticKind kind, std::size_t state) {
+  constexpr std::array<double, kSyntheticStates> kEqual = {0.0, 1.0, 2.0},
+                                                 kWeighted = {1.0, 0.0, 2.0};
+  return kind == SyntheticKind::kWeightedStates ? kWeighted[state] : kEqual[state];
+}
 inline std::string_view to_string(SyntheticKind kind) {
   return kSyntheticWords[static_cast<std::size_t>(kind)];
 }

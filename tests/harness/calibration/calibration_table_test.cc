@@ -40,7 +40,7 @@ TEST_CASE("every criterion that is judged keeps its word in every world, in a sm
       calibrate(few(400), calibrated_criteria(kLevel, kEpsilon), calibrated_worlds(), sink);
   REQUIRE(result.has_value());
   CHECK(result->is_within());
-  CHECK(result->in_process.size() == 12 * 5 + 2 * 3);
+  CHECK(result->in_process.size() == 12 * 5 + 3 * 3);
   for (const auto& cell : result->in_process) {
     CAPTURE(cell.world);
     CAPTURE(cell.criterion);
@@ -149,6 +149,18 @@ TEST_CASE("three initial states in random orders err nearly as often as one, los
     if (!criterion.is_judged) continue;
     const auto losing = world_of(SyntheticKind::kLosingStates);
     CHECK(in_process_cell(criterion, losing, few(2000), 2000).is_within());
+  }
+}
+
+TEST_CASE("initial states of weights err as often as one, and the weights are heeded") {
+  const auto criteria = calibrated_criteria(kLevel, kEpsilon);
+  const auto weighted = world_of(SyntheticKind::kWeightedStates);
+  const auto clean = in_process_cell(criteria[0], weighted, few(4000), 4000);
+  // Eleven runs, each from a state by its weight.
+  CHECK(std::abs(clean.share() - std::pow(1.0 - kEpsilon, 11)) < 4.0 * std::sqrt(0.09 / 4000));
+  for (const auto& criterion : criteria) {
+    if (!criterion.is_judged) continue;
+    CHECK(in_process_cell(criterion, weighted, few(2000), 2000).is_within());
   }
 }
 
