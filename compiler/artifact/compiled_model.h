@@ -95,7 +95,7 @@ class ClauseList {
 using PlanValue = std::variant<double, std::int64_t, std::string>;
 
 /// One `perform` of the plan: what its location executes.
-struct PlanStep {
+struct PlanPerform {
   std::string event;  // printed ground event
   base::SourceRange source;
   std::string failure_class;
@@ -186,7 +186,7 @@ struct CompiledModel {
   /// at any horizon, and such a model can only be written.
   bool folded = false;
   std::vector<Origin> origins;
-  std::vector<PlanStep> plan;         // by location number; empty without a plan
+  std::vector<PlanPerform> plan;      // by location number; empty without a plan
   std::vector<PlanCut> plan_cuts;     // empty if the whole plan was unrolled
   bool has_constraints = false;       // kHit atoms exist
   std::vector<Objective> objectives;  // quantities that best traces minimize, the first one first

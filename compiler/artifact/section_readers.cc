@@ -265,7 +265,7 @@ bool ProvenanceReader::read_clauses() {
 }
 
 bool ProvenanceReader::read_step() {
-  PlanStep step;
+  PlanPerform step;
   if (!cursor_.word("the event of a step", step.event)) return false;
   step.source = cursor_.last();
   if (!cursor_.word("a failure class", step.failure_class) ||

@@ -174,9 +174,9 @@ bool is_users_predicate(const TypedModel& model, SymbolId id) {
 
 /// Which atoms of user predicates tell traces apart: facts for the model's own horizon. For another
 /// one, which `clingo -c horizon=N` gives, nothing is known, and all are.
-class OpenAtoms {
+class OpenAtomRules {
  public:
-  OpenAtoms(const TypedModel& model, AspNames& names, const AspOptions& options)
+  OpenAtomRules(const TypedModel& model, AspNames& names, const AspOptions& options)
       : model_(model), names_(names), given_(options.open_atoms.has_value()) {
     if (!given_) return;
     for (const auto& atom : *options.open_atoms) {
@@ -219,7 +219,7 @@ class OpenAtoms {
 
 /// The atoms that may be true: HoldsAt, Happens, ReleasedAt, user predicates.
 std::string choice_rules(const TypedModel& model, const AspNames& names, TermWriter& terms,
-                         OpenAtoms& open) {
+                         OpenAtomRules& open) {
   std::string text =
       "\n% Every trace is possible that nothing forbids\n"
       "{ holds_at(F,T) } :- fluent(F), time(T).\n"
@@ -406,7 +406,7 @@ class Exporter {
   TermWriter terms_;
   FormulaWriter formulas_;
   CompletionRules completion_;
-  OpenAtoms open_;
+  OpenAtomRules open_;
 };
 
 }  // namespace

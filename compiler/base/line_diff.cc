@@ -24,9 +24,9 @@ using Lines = std::span<const std::string_view>;
 constexpr Index kMaxEdits = 3000;  // 36 MB of saved ends
 
 /// The lines of either side that are not part of the longest common subsequence.
-class Comparison {
+class LineComparison {
  public:
-  Comparison(Lines a, Lines b)
+  LineComparison(Lines a, Lines b)
       : a_(a), b_(b), a_changed_(a.size(), false), b_changed_(b.size(), false) {
     const auto shorter = std::min(count(a), count(b));
     while (front_ < shorter && same(front_, front_)) ++front_;
@@ -122,7 +122,7 @@ std::string range_text(std::size_t begin, std::size_t end) {
 }  // namespace
 
 std::vector<LineChange> line_changes(Lines a, Lines b) {
-  const Comparison comparison(a, b);
+  const LineComparison comparison(a, b);
   std::vector<LineChange> changes;
   std::size_t i = 0, j = 0;
   while (i < a.size() || j < b.size()) {

@@ -14,7 +14,7 @@ void append(std::string& out, std::string_view text) {
   out += fmt::format("{}:{};", text.size(), text);
 }
 
-void append(std::string& out, const Pose& p) {
+void append(std::string& out, const PlanPose& p) {
   append(out, p.frame);
   for (const double part : {p.x_m, p.y_m, p.z_m, p.qx, p.qy, p.qz, p.qw}) {
     out += fmt::format("{:a};", part);  // hexadecimal: exact

@@ -75,7 +75,7 @@ struct Value {
   ValueId tail;
   DatumOrigin origin;          // kCons, while macros are expanded
   PlanFunctionValue function;  // kFunction; others: the shortest life of a function in it
-  Pose pose;                   // kPose and kTransform; kVector and kQuaternion use their part
+  PlanPose pose;               // kPose and kTransform; kVector and kQuaternion use their part
   DesignatorKind designator = DesignatorKind::kMotion;
   // kDesignator: in written order; kModel: the description that it was sought by
   std::vector<std::pair<std::string, ValueId>> keys;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/artifact/literal.h"
+#include "compiler/base/known.h"
 
 namespace parallax::compiler {
 
@@ -83,7 +84,7 @@ std::vector<std::int32_t> atoms_of(const FormulaStore& store, std::span<const Fo
 /// The variables that occur under an even number of negations, ascending.
 std::vector<std::int32_t> positive_atoms(const FormulaStore& store, FormulaId formula);
 
-enum class Truth : std::uint8_t { kFalse, kTrue, kUnknown };
+using base::Truth;
 
 /// The formula's value where some atoms are known (Kleene's strong three-valued logic). Linear in
 /// the formula's graph.

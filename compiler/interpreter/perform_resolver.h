@@ -88,7 +88,7 @@ class PerformResolver {
 
  private:
   struct Target {
-    std::optional<Pose> pose;
+    std::optional<PlanPose> pose;
     std::optional<ValueId> object;  // otherwise: what it is in, on or of
   };
   using Variables = std::map<std::string, ValueId, std::less<>>;

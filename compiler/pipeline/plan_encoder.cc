@@ -428,10 +428,10 @@ std::vector<PlanCut> plan_cuts(const PlanGraph& graph) {
   return cuts;
 }
 
-std::vector<PlanStep> plan_steps(const PlanGraph& graph) {
-  std::vector<PlanStep> steps;
+std::vector<PlanPerform> plan_steps(const PlanGraph& graph) {
+  std::vector<PlanPerform> steps;
   for (const auto& location : graph.locations) {
-    PlanStep step{location.event.text, location.source, location.failure_class, {}};
+    PlanPerform step{location.event.text, location.source, location.failure_class, {}};
     for (const auto& [name, value] : location.arguments) {
       step.arguments.emplace(name, artifact_value(graph, value));
     }

@@ -30,7 +30,7 @@ base::Status encode_plan(const PlanGraph& graph, const PlanFormulas& formulas,
                          GroundModel& model, FormulaGrounder& grounder, base::DiagnosticSink& sink);
 
 /// The plan's steps for the artifact, by location number.
-std::vector<PlanStep> plan_steps(const PlanGraph& graph);
+std::vector<PlanPerform> plan_steps(const PlanGraph& graph);
 
 /// The places where unrolling was cut, in the order of the graph's terminals.
 std::vector<PlanCut> plan_cuts(const PlanGraph& graph);

@@ -32,7 +32,7 @@ class PlanFileLoader {
   PlanFileLoader(const base::PathGate& gate, base::SourceFiles& files, base::DiagnosticSink& sink)
       : gate_(gate), files_(files), sink_(sink) {}
 
-  void load(const PlanPath& named) {
+  void load(const PlanEntry& named) {
     std::error_code error;
     if (fs::is_directory(named.path, error)) return load_folder(named);
     load_file(named.path, named.place);
@@ -49,7 +49,7 @@ class PlanFileLoader {
                  : sink_.error_about(code, path.string(), args...);
   }
 
-  void load_folder(const PlanPath& named) {
+  void load_folder(const PlanEntry& named) {
     auto plans = plan_files_in(named.path);
     const auto is_system = [](const fs::path& path) { return path.extension() == ".asd"; };
     const auto middle = std::stable_partition(plans.begin(), plans.end(), is_system);
@@ -79,7 +79,7 @@ class PlanFileLoader {
     }
   }
 
-  void load_system(const fs::path& definition, const PlanPath& named) {
+  void load_system(const fs::path& definition, const PlanEntry& named) {
     if (!admitted(definition, named.place)) return;
     const auto file = base::load_text(definition, files_, sink_);
     if (!file) return;
@@ -155,7 +155,7 @@ std::vector<fs::path> plan_files_in(const fs::path& folder) {
   return out;
 }
 
-base::Result<std::vector<base::FileId>> load_plan_files(std::span<const PlanPath> paths,
+base::Result<std::vector<base::FileId>> load_plan_files(std::span<const PlanEntry> paths,
                                                         const base::PathGate& gate,
                                                         base::SourceFiles& files,
                                                         base::DiagnosticSink& sink) {

@@ -13,7 +13,7 @@
 namespace parallax::compiler {
 
 /// A file or a folder of a plan, and where a file names it; none: the user named it.
-struct PlanPath {
+struct PlanEntry {
   std::filesystem::path path;
   std::optional<base::SourceRange> place;
 };
@@ -23,7 +23,7 @@ struct PlanPath {
 /// files by name (W-ORDER, if there are several). Of several definitions the one named like the
 /// folder counts. Files that definitions name, and targets of links, must be admitted by `gate`. A
 /// file that stands twice, a folder without plan and more than kMaxPlanFiles are CPL062.
-base::Result<std::vector<base::FileId>> load_plan_files(std::span<const PlanPath> paths,
+base::Result<std::vector<base::FileId>> load_plan_files(std::span<const PlanEntry> paths,
                                                         const base::PathGate& gate,
                                                         base::SourceFiles& files,
                                                         base::DiagnosticSink& sink);

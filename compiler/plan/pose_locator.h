@@ -10,15 +10,15 @@
 namespace parallax::compiler {
 
 /// A pose of a plan: position [m] and unit quaternion in a named frame.
-struct Pose {
+struct PlanPose {
   std::string frame = "map";
   double x_m = 0.0, y_m = 0.0, z_m = 0.0;
   double qx = 0.0, qy = 0.0, qz = 0.0, qw = 1.0;
-  friend bool operator==(const Pose&, const Pose&) = default;
+  friend bool operator==(const PlanPose&, const PlanPose&) = default;
 };
 
 /// Rotation about the vertical axis of the pose's quaternion [rad], in (-pi, pi].
-inline double yaw_rad(const Pose& p) {
+inline double yaw_rad(const PlanPose& p) {
   return std::atan2(2.0 * (p.qw * p.qz + p.qx * p.qy), 1.0 - 2.0 * (p.qy * p.qy + p.qz * p.qz));
 }
 
@@ -30,7 +30,7 @@ class PoseLocator {
   virtual ~PoseLocator() = default;
   /// The region of that function that contains the pose; none outside all of them.
   virtual std::optional<std::string> region_of(std::string_view function,
-                                               const Pose& pose) const = 0;
+                                               const PlanPose& pose) const = 0;
   struct Nearest {
     std::string region;
     double distance_m = 0.0;
@@ -38,7 +38,7 @@ class PoseLocator {
     std::string outside = {};
   };
   /// For messages: the region nearest to a pose outside; none if the function has no regions.
-  virtual std::optional<Nearest> nearest(std::string_view function, const Pose& pose) const = 0;
+  virtual std::optional<Nearest> nearest(std::string_view function, const PlanPose& pose) const = 0;
   /// For messages: where a region of this name is defined.
   virtual std::optional<base::SourceRange> place_of(std::string_view /*region*/) const {
     return std::nullopt;
@@ -48,10 +48,10 @@ class PoseLocator {
 /// Locator for a model without regions: no pose lies in one.
 class NoRegions final : public PoseLocator {
  public:
-  std::optional<std::string> region_of(std::string_view, const Pose&) const override {
+  std::optional<std::string> region_of(std::string_view, const PlanPose&) const override {
     return std::nullopt;
   }
-  std::optional<Nearest> nearest(std::string_view, const Pose&) const override {
+  std::optional<Nearest> nearest(std::string_view, const PlanPose&) const override {
     return std::nullopt;
   }
 };

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/base/known.h"
 #include "compiler/reference/expanded_model.h"
 #include "compiler/sema/typed_model.h"
 
@@ -49,7 +50,7 @@ class ReferenceSearch {
   bool finished() const { return finished_; }
 
  private:
-  enum class Truth : std::uint8_t { kFalse, kTrue, kUnknown };
+  using Truth = base::Truth;
   using Rule = ReferenceFinding::Rule;
 
   bool full() const { return found_.size() >= limit_; }

@@ -12,14 +12,14 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-struct Extent {
+struct TextExtent {
   std::uint32_t begin = 0, end = 0;
 };
 
 /// The node with the parentheses around it, inside [from, to).
-Extent with_parentheses(std::string_view text, const Node& node, std::uint32_t from,
-                        std::uint32_t to) {
-  Extent out{node.begin, node.end};
+TextExtent with_parentheses(std::string_view text, const Node& node, std::uint32_t from,
+                            std::uint32_t to) {
+  TextExtent out{node.begin, node.end};
   while (true) {
     auto before = out.begin, after = out.end;
     while (before > from && is_blank(text[before - 1])) --before;

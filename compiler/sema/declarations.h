@@ -54,7 +54,7 @@ std::optional<SortId> resolve_sort(const Ast& ast, Word word, TypedModel& model,
                                    base::DiagnosticSink& sink);
 
 /// One `option NAME VALUE`. E2011 for unknown names, E2012 for values the option cannot have.
-void apply_option(const Ast& ast, const Statement& statement, ModelOptions& options,
+void apply_option(const Ast& ast, const Statement& statement, DeclaredOptions& options,
                   base::DiagnosticSink& sink);
 
 /// The names that `ignore` statements put out of force. A declaration or list entry is left out if

@@ -18,17 +18,17 @@ enum class Values : std::uint8_t { kOnOff, kEncoding, kSolver, kFile, kOff };
 struct OptionInfo {
   std::string_view name;
   Values values;
-  bool ModelOptions::*flag;  // null: accepted, without meaning for us
+  bool DeclaredOptions::*flag;  // null: accepted, without meaning for us
 };
 
 constexpr std::array<OptionInfo, 12> kOptions = {{
     {"encoding", Values::kEncoding, nullptr},
-    {"trajectory", Values::kOnOff, &ModelOptions::trajectory},
-    {"manualrelease", Values::kOnOff, &ModelOptions::manual_release},
-    {"renaming", Values::kOnOff, &ModelOptions::renaming},
-    {"timediff", Values::kOnOff, &ModelOptions::time_diff},
-    {"modeldiff", Values::kOnOff, &ModelOptions::model_diff},
-    {"showpred", Values::kOnOff, &ModelOptions::show_predicates},
+    {"trajectory", Values::kOnOff, &DeclaredOptions::trajectory},
+    {"manualrelease", Values::kOnOff, &DeclaredOptions::manual_release},
+    {"renaming", Values::kOnOff, &DeclaredOptions::renaming},
+    {"timediff", Values::kOnOff, &DeclaredOptions::time_diff},
+    {"modeldiff", Values::kOnOff, &DeclaredOptions::model_diff},
+    {"showpred", Values::kOnOff, &DeclaredOptions::show_predicates},
     {"debug", Values::kOnOff, nullptr},
     {"tmpfilerm", Values::kOnOff, nullptr},
     {"finalstatefile", Values::kFile, nullptr},
@@ -71,7 +71,7 @@ bool allowed(Values values, std::string_view value) {
 
 }  // namespace
 
-void apply_option(const Ast& ast, const Statement& statement, ModelOptions& options,
+void apply_option(const Ast& ast, const Statement& statement, DeclaredOptions& options,
                   base::DiagnosticSink& sink) {
   const auto name = ast.text(statement.name);
   const auto value = ast.text(statement.value);

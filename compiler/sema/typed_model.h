@@ -252,7 +252,7 @@ struct FunctionValue {
 
 /// The `option` statements; those that only chose files or solvers of the 2005 reasoner are not
 /// kept.
-struct ModelOptions {
+struct DeclaredOptions {
   int encoding = 2;
   bool trajectory = false;
   bool manual_release = false;  // already applied to every fluent symbol
@@ -299,7 +299,7 @@ struct TypedModel {
   std::vector<TrajectoryAxiom> trajectories;     // in source order
   std::vector<FunctionValue> function_values;    // in source order
   std::vector<SharedInstance> shared_instances;  // in source order
-  ModelOptions options;
+  DeclaredOptions options;
 
   std::optional<SortId> find_sort(std::string_view name) const;
   std::optional<ObjectId> find_object(std::string_view name) const;

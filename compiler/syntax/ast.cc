@@ -90,7 +90,7 @@ std::uint32_t Ast::add_item(const Item& item) {
   return static_cast<std::uint32_t>(items_.size() - 1);
 }
 
-std::uint32_t Ast::add_bounds(const Bounds& bounds) {
+std::uint32_t Ast::add_bounds(const SortBounds& bounds) {
   bounds_.push_back(bounds);
   return static_cast<std::uint32_t>(bounds_.size() - 1);
 }

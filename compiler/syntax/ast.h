@@ -110,7 +110,7 @@ struct Item {
   Word parent;  // kSort, kReifiedSort
 };
 
-struct Bounds {
+struct SortBounds {
   std::int64_t lower = 0;
   std::int64_t upper = 0;
 };
@@ -141,7 +141,9 @@ class Ast {
   }
 
   /// Bounds of a kRange statement.
-  const Bounds& bounds(const Statement& statement) const { return bounds_[statement.first_item]; }
+  const SortBounds& bounds(const Statement& statement) const {
+    return bounds_[statement.first_item];
+  }
 
   const Node& operator[](NodeId id) const {
     return chunks_[id.index() >> kChunkBits][id.index() & (kChunkSize - 1)];
@@ -178,7 +180,7 @@ class Ast {
   }
   void add(const Statement& statement) { statements_.push_back(statement); }
   std::uint32_t add_item(const Item& item);
-  std::uint32_t add_bounds(const Bounds& bounds);
+  std::uint32_t add_bounds(const SortBounds& bounds);
 
  private:
   static constexpr std::uint32_t kChunkBits = 14;
@@ -188,7 +190,7 @@ class Ast {
   std::string_view text_;  // of the SourceFile `file_`
   std::vector<Statement> statements_;
   std::vector<Item> items_;
-  std::vector<Bounds> bounds_;
+  std::vector<SortBounds> bounds_;
   std::vector<std::unique_ptr<Node[]>> chunks_;  // no copy while growing
   std::vector<NodeId> children_;
   std::size_t node_count_ = 0;

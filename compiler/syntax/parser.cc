@@ -176,7 +176,7 @@ class StatementParser {
     statement_.kind = StatementKind::kRange;
     statement_.sort = name();
     if (statement_.sort.empty()) return malformed("a sort");
-    Bounds bounds;
+    SortBounds bounds;
     if (!bound(bounds.lower) || !bound(bounds.upper)) return;
     statement_.first_item = ast_.add_bounds(bounds);
     finish("the end of the line");

@@ -59,7 +59,7 @@ struct CauseRate {
 };
 
 /// The result of repeating a discrepancy once before it was accepted.
-enum class Confirmation : std::uint8_t { kBitEqual, kDiffers, kLost };
+enum class RepeatResult : std::uint8_t { kBitEqual, kDiffers, kLost };
 
 /// Does the simulation end otherwise than its trace, or did it just differ on the way?
 enum class DiscrepancyKind : std::uint8_t { kLasting, kTransient };
@@ -112,7 +112,7 @@ struct Discrepancy {
   std::vector<DivergingFluent> first;    // what differs there
   std::vector<DivergingFluent> fluents;  // what differs at the last timepoint; empty if transient
   Cause cause;
-  Confirmation confirmation = Confirmation::kBitEqual;
+  RepeatResult confirmation = RepeatResult::kBitEqual;
   std::optional<PathDivergence> path;  // of an executed plan
   SampleRecord record;
   State end;  // the variables that were compared, as last observed

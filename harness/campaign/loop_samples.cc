@@ -18,14 +18,14 @@ constexpr std::string_view kStateStream = "closed loop: initial state";
 constexpr std::string_view kChoiceStream = "closed loop: choices of the plan";
 
 /// Asks the plan for one perform after the other and tells it what came of each.
-class PlanSource final : public ActionSource {
+class LoopActions final : public ActionSource {
  public:
   struct Bounds {
     std::int64_t performs;
     double simulated_s;
   };
-  PlanSource(const Scenario& scenario, const ExecutablePlan& plan, const DrawKey& choices,
-             const Bounds& bounds)
+  LoopActions(const Scenario& scenario, const ExecutablePlan& plan, const DrawKey& choices,
+              const Bounds& bounds)
       : scenario_(scenario), plan_(plan), choices_(choices), bounds_(bounds) {}
 
   void begin(SampleRecord& record) override {
@@ -112,8 +112,8 @@ std::string wrong_path(const Scenario& scenario, const ExecutablePlan& plan,
   if (!fits) return "its observations are not those of its path";
   SampleRecord again;
   again.path.emplace();
-  PlanSource source(scenario, plan, LoopSamples::choices_key(bounds.campaign_seed, record.sample),
-                    {bounds.max_performs, scenario.limits.max_simulated_s});
+  LoopActions source(scenario, plan, LoopSamples::choices_key(bounds.campaign_seed, record.sample),
+                     {bounds.max_performs, scenario.limits.max_simulated_s});
   source.begin(again);
   again.observations = {record.observations.front()};
   while (source.next(again) != nullptr) {
@@ -186,7 +186,7 @@ std::optional<SampleRecord> LoopSamples::make_from(std::int64_t sample,
   if (guided) record.path->target = guided->target;
   auto key = key_of(sample);
   const auto choices = choices_key(campaign_seed_, sample);
-  PlanSource actions(scenario_, plan_, choices, {max_performs_, scenario_.limits.max_simulated_s});
+  LoopActions actions(scenario_, plan_, choices, {max_performs_, scenario_.limits.max_simulated_s});
   for (;; ++record.attempt, ++key.attempt) {
     auto drawn = start_of(record).sampler.draw_counting(key, nullptr);
     record.initial = std::move(drawn.start);
@@ -213,7 +213,7 @@ std::optional<SampleRecord> LoopSamples::make_at(const SampleRecord& like, std::
   record.initial = std::move(start);
   record.seed = like.seed;
   const auto choices = choices_key(campaign_seed_, like.sample);
-  PlanSource actions(scenario_, plan_, choices, {max_performs_, scenario_.limits.max_simulated_s});
+  LoopActions actions(scenario_, plan_, choices, {max_performs_, scenario_.limits.max_simulated_s});
   const auto status = simulate_start(actions, repeats_losses_, simulator, record, abandoned);
   if (!status) return std::nullopt;
   end_as(*status, record);

@@ -128,7 +128,7 @@ class Estimator {
     if (options_.indifference) return rates.sequential != SequentialAnswer::kOpen;
     if (!options_.until_known) return false;
     const RateCounts counts{rates.runs + rates.lost, rates.any.count, rates.lost, false};
-    return weigh(*options_.until_known, counts) != Evidence::kTooLittle;
+    return weigh(*options_.until_known, counts) != RateVerdict::kTooLittle;
   }
 
   static RunResult result_of(const TrialSample& sample) {
@@ -217,11 +217,11 @@ class Estimator {
 
 }  // namespace
 
-Evidence RatesResult::evidence(const TraceRates& trace) const {
+RateVerdict RatesResult::evidence(const TraceRates& trace) const {
   if (indifference) {
     const bool is_below = trace.sequential == SequentialAnswer::kBelow;
-    if (!is_below && trace.sequential != SequentialAnswer::kAbove) return Evidence::kTooLittle;
-    return is_below == (until_known->upper < 1.0) ? Evidence::kSupports : Evidence::kRefutes;
+    if (!is_below && trace.sequential != SequentialAnswer::kAbove) return RateVerdict::kTooLittle;
+    return is_below == (until_known->upper < 1.0) ? RateVerdict::kSupports : RateVerdict::kRefutes;
   }
   return weigh(*until_known, {trace.runs + trace.lost, trace.any.count, trace.lost, false});
 }
@@ -239,7 +239,7 @@ bool RatesResult::is_answered() const {
   if (fixed_runs) return true;
   return std::all_of(traces.begin(), traces.end(), [this](const TraceRates& trace) {
     const bool narrow = until_width > 0.0 && !is_too_wide(trace);
-    return narrow || (until_known && evidence(trace) != Evidence::kTooLittle);
+    return narrow || (until_known && evidence(trace) != RateVerdict::kTooLittle);
   });
 }
 

@@ -81,7 +81,7 @@ struct RatesResult {
 
   /// Weighs the runs of a trace as evidence for or against `until_known`; of `indifference` it is
   /// the answer of the sequential test.
-  Evidence evidence(const TraceRates& trace) const;
+  RateVerdict evidence(const TraceRates& trace) const;
   /// Did the runs end before the interval was as narrow as asked?
   bool is_too_wide(const TraceRates& trace) const;
   /// Does every trace have what the runs were to go on for?

@@ -70,9 +70,9 @@ base::Status check_written(const Journal& journal, const CampaignOptions& option
   return sink.error_about(codes::kFileNotWritable, path.string(), error);
 }
 
-Confirmation confirmation_of(const SampleRecord& record, const SampleRecord& again) {
-  if (again.status == SampleStatus::kLost) return Confirmation::kLost;
-  return first_difference(record, again) ? Confirmation::kDiffers : Confirmation::kBitEqual;
+RepeatResult confirmation_of(const SampleRecord& record, const SampleRecord& again) {
+  if (again.status == SampleStatus::kLost) return RepeatResult::kLost;
+  return first_difference(record, again) ? RepeatResult::kDiffers : RepeatResult::kBitEqual;
 }
 
 void note_timing(const SimulatorBench& bench, std::chrono::steady_clock::time_point started,
@@ -157,11 +157,11 @@ void add_simulator_caveats(const SimulatorInfo& simulator, const Discrepancy* fo
     result.caveats.push_back(
         "the simulator takes no seed, so its own randomness is not under control");
   }
-  if (found != nullptr && found->confirmation == Confirmation::kDiffers) {
+  if (found != nullptr && found->confirmation == RepeatResult::kDiffers) {
     result.caveats.push_back(
         "the simulator is not deterministic: the same start and seed gave another result");
   }
-  if (found != nullptr && found->confirmation == Confirmation::kLost) {
+  if (found != nullptr && found->confirmation == RepeatResult::kLost) {
     result.caveats.push_back("the simulator was lost when the discrepancy was repeated");
   }
 }

@@ -47,7 +47,7 @@ base::Status check_written(const Journal& journal, const CampaignOptions& option
                            base::DiagnosticSink& sink);
 
 /// Compares a discrepancy with its repetition.
-Confirmation confirmation_of(const SampleRecord& record, const SampleRecord& again);
+RepeatResult confirmation_of(const SampleRecord& record, const SampleRecord& again);
 
 /// Records the time taken. Call it when no worker simulates any more.
 void note_timing(const SimulatorBench& bench, std::chrono::steady_clock::time_point started,

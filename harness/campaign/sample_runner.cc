@@ -119,12 +119,12 @@ std::optional<std::string> taken_as(const ActionBinding& binding, const std::str
 }
 
 /// An event of the trace, taken apart, and what the plan says of it.
-struct Occurrence {
+struct PlannedOccurrence {
   GroundFluent event;
   const PlannedEvent& planned;
 };
 
-ActionCall call_for(const ActionBinding& binding, const Occurrence& at) {
+ActionCall call_for(const ActionBinding& binding, const PlannedOccurrence& at) {
   ActionCall call{with_arguments(binding.controller, at.event), binding.arguments,
                   binding.time_limit_s};
   for (auto& [name, value] : call.arguments) {
@@ -138,8 +138,9 @@ ActionCall call_for(const ActionBinding& binding, const Occurrence& at) {
 
 /// Reports required arguments of the built-in simulator's controller that are missing. Returns
 /// false if it reported any.
-bool check_required(const ActionBinding& binding, const Occurrence& at, const ActionCall& call,
-                    const ControllerSpec& controller, base::DiagnosticSink& sink) {
+bool check_required(const ActionBinding& binding, const PlannedOccurrence& at,
+                    const ActionCall& call, const ControllerSpec& controller,
+                    base::DiagnosticSink& sink) {
   const auto errors_before = sink.error_count();
   for (const auto& argument : controller.arguments) {
     if (!argument.required || call.arguments.contains(std::string(argument.name))) continue;
@@ -154,7 +155,7 @@ class ValueChecker {
  public:
   explicit ValueChecker(const WorldSpec& world) : world_(world), layout_(lay_out(world)) {}
 
-  void check(const ActionBinding& binding, const Occurrence& at, const ActionCall& call,
+  void check(const ActionBinding& binding, const PlannedOccurrence& at, const ActionCall& call,
              const ControllerSpec& controller, base::DiagnosticSink& sink) const {
     const auto report = [&](const std::string& name, const std::string& fault) {
       if (comes_from_plan(binding, at, name))
@@ -180,7 +181,7 @@ class ValueChecker {
   }
 
  private:
-  static bool comes_from_plan(const ActionBinding& binding, const Occurrence& at,
+  static bool comes_from_plan(const ActionBinding& binding, const PlannedOccurrence& at,
                               const std::string& name) {
     const auto& given = at.planned.arguments;
     return !at.planned.source.empty() &&
@@ -189,8 +190,9 @@ class ValueChecker {
   }
 
   /// Speeds that the plan gives; those of the scenario were looked at when it was read.
-  void check_steps(const ActionBinding& binding, const Occurrence& at, const ActionCall& call,
-                   const ControllerSpec& controller, base::DiagnosticSink& sink) const {
+  void check_steps(const ActionBinding& binding, const PlannedOccurrence& at,
+                   const ActionCall& call, const ControllerSpec& controller,
+                   base::DiagnosticSink& sink) const {
     const bool gives_speed = std::any_of(
         controller.arguments.begin(), controller.arguments.end(), [&](const ArgumentSpec& one) {
           return is_speed(one) && comes_from_plan(binding, at, std::string(one.name));
@@ -206,9 +208,10 @@ class ValueChecker {
   }
 
   /// The plan's perform is at fault, not the scenario.
-  void report_plan_value(const ActionBinding& binding, const Occurrence& at, const ActionCall& call,
-                         const ControllerSpec& controller, const std::string& name,
-                         const std::string& fault, base::DiagnosticSink& sink) const {
+  void report_plan_value(const ActionBinding& binding, const PlannedOccurrence& at,
+                         const ActionCall& call, const ControllerSpec& controller,
+                         const std::string& name, const std::string& fault,
+                         base::DiagnosticSink& sink) const {
     auto error = sink.error_about(codes::kBadWorld, at.planned.source,
                                   fmt::format("`{}` of `{}`", name, at.event.text), fault);
     error.note(binding.source, fmt::format("the plan's value goes to `{}` here", call.controller));
@@ -411,7 +414,7 @@ base::Result<std::vector<ActionCall>> action_calls(const Scenario& scenario,
   const ValueChecker values(scenario.world);
   std::vector<ActionCall> calls;
   for (std::size_t t = 0; t < trace.event_count(); ++t) {
-    const Occurrence at{ground_fluent(trace.event(t)), trace.plan[t]};
+    const PlannedOccurrence at{ground_fluent(trace.event(t)), trace.plan[t]};
     const auto* binding = action_of(scenario, at.event);
     if (binding == nullptr) {
       sink.error(codes::kEventWithoutAction, scenario.actions_source, at.event.symbol);

@@ -46,11 +46,11 @@ class StartsAgain final : public SampleMaker {
 };
 
 /// The answer to one question.
-struct Verdict {
-  Answer answer = Answer::kNone;
+struct OtherVerdict {
+  OpinionAnswer answer = OpinionAnswer::kNone;
   std::string words;
 };
-using Judge = std::function<base::Result<std::optional<Verdict>>(const SampleRecord&)>;
+using Judge = std::function<base::Result<std::optional<OtherVerdict>>(const SampleRecord&)>;
 
 base::DiagnosticBuilder report_unseen(const Scenario& scenario, const std::string& variable,
                                       base::DiagnosticSink& sink) {
@@ -79,7 +79,7 @@ base::Result<std::optional<std::vector<Opinion>>> ask(
                         record->reason);
     }
     Opinion opinion{question.record.trace, question.record.sample, question.found,
-                    question.cause,        Answer::kNone,          record->reason};
+                    question.cause,        OpinionAnswer::kNone,   record->reason};
     if (record->status == SampleStatus::kOk) {
       auto verdict = judge_one(*record);
       if (!verdict) return sink.already_reported();
@@ -102,27 +102,28 @@ std::string other_start(const DivergingFluent& differs) {
 
 }  // namespace
 
-std::string_view to_string(Answer answer) {
+std::string_view to_string(OpinionAnswer answer) {
   switch (answer) {
-    case Answer::kClean:
+    case OpinionAnswer::kClean:
       return "clean";
-    case Answer::kDiscrepancy:
+    case OpinionAnswer::kDiscrepancy:
       return "discrepancy";
-    case Answer::kNone:
+    case OpinionAnswer::kNone:
       break;
   }
   return "none";
 }
 
-std::int64_t SecondOpinion::count(bool found, Answer answer) const {
+std::int64_t SecondOpinion::count(bool found, OpinionAnswer answer) const {
   return std::count_if(opinions.begin(), opinions.end(), [&](const Opinion& one) {
     return one.found == found && one.answer == answer;
   });
 }
 
 double SecondOpinion::disagreement_upper() const {
-  const auto parted = count(false, Answer::kDiscrepancy) + count(false, Answer::kNone);
-  const auto all = parted + count(false, Answer::kClean);
+  const auto parted =
+      count(false, OpinionAnswer::kDiscrepancy) + count(false, OpinionAnswer::kNone);
+  const auto all = parted + count(false, OpinionAnswer::kClean);
   return all == 0 ? 1.0 : clopper_pearson_upper(parted, all, level);
 }
 
@@ -177,21 +178,25 @@ base::Result<std::optional<std::vector<Opinion>>> opinions_on_traces(
         return repeat_sample(calls->at(record.trace), repeats_losses, record, simulator, abandoned);
       });
   const auto comparison = scenario.comparison();
-  const auto judge_one = [&](const SampleRecord& record) -> base::Result<std::optional<Verdict>> {
+  const auto judge_one =
+      [&](const SampleRecord& record) -> base::Result<std::optional<OtherVerdict>> {
     const auto& trace = *traces.at(record.trace);
     const auto judgement = judge(*scenario.mapping, bench.fluents(), trace, record.observations);
     if (!judgement.missing.empty()) {
       return report_unseen(scenario, *judgement.missing.begin(), sink);
     }
     if (judgement.first_divergence == 0) {
-      return std::optional(Verdict{Answer::kNone, other_start(judgement.first.front())});
+      return std::optional(
+          OtherVerdict{OpinionAnswer::kNone, other_start(judgement.first.front())});
     }
-    if (judgement.matches(comparison)) return std::optional(Verdict{Answer::kClean, {}});
+    if (judgement.matches(comparison))
+      return std::optional(OtherVerdict{OpinionAnswer::kClean, {}});
     const auto admitted = admitted_by_model(scenario, feed, trace, judgement);
-    if (admitted == base::Known::kUndecided) return std::optional<Verdict>();
-    if (admitted == base::Known::kYes) return std::optional(Verdict{Answer::kClean, {}});
-    return std::optional(Verdict{Answer::kDiscrepancy,
-                                 cause_of(trace, judgement, comparison, record.outcomes).text});
+    if (admitted == base::Known::kUndecided) return std::optional<OtherVerdict>();
+    if (admitted == base::Known::kYes)
+      return std::optional(OtherVerdict{OpinionAnswer::kClean, {}});
+    return std::optional(OtherVerdict{
+        OpinionAnswer::kDiscrepancy, cause_of(trace, judgement, comparison, record.outcomes).text});
   };
   return ask(maker, scenario, bench, judge_one, sink);
 }
@@ -209,25 +214,26 @@ base::Result<std::optional<std::vector<Opinion>>> opinions_on_executions(
                                       const std::function<bool()>& abandoned) {
         return samples->make_at(record, record.sample, record.initial, simulator, abandoned);
       });
-  const auto judge_one = [&](const SampleRecord& record) -> base::Result<std::optional<Verdict>> {
+  const auto judge_one =
+      [&](const SampleRecord& record) -> base::Result<std::optional<OtherVerdict>> {
     const auto& mapping = *scenario.mapping;
     const auto first = judge(mapping, bench.fluents(), *samples->start_of(record).state,
                              {record.observations.front()});
     if (first.missing.empty() && first.first_divergence) {
-      return std::optional(Verdict{Answer::kNone, other_start(first.first.front())});
+      return std::optional(OtherVerdict{OpinionAnswer::kNone, other_start(first.first.front())});
     }
     const auto judgement =
         judge_path(mapping, bench.fluents(), feed, record, scenario.comparison());
     if (!judgement.missing.empty()) return report_unseen(scenario, judgement.missing, sink);
-    if (judgement.admitted == base::Known::kUndecided) return std::optional<Verdict>();
+    if (judgement.admitted == base::Known::kUndecided) return std::optional<OtherVerdict>();
     if (judgement.admitted == base::Known::kNo) {
-      return std::optional(Verdict{Answer::kDiscrepancy, judgement.cause.text});
+      return std::optional(OtherVerdict{OpinionAnswer::kDiscrepancy, judgement.cause.text});
     }
     const auto end = record.path->end;
     if (end != PathEnd::kDone && end != PathEnd::kFailed) {
-      return std::optional(Verdict{Answer::kNone, "the execution did not end there"});
+      return std::optional(OtherVerdict{OpinionAnswer::kNone, "the execution did not end there"});
     }
-    return std::optional(Verdict{Answer::kClean, {}});
+    return std::optional(OtherVerdict{OpinionAnswer::kClean, {}});
   };
   return ask(maker, scenario, bench, judge_one, sink);
 }

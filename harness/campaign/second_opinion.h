@@ -16,16 +16,16 @@ namespace parallax::harness {
 
 /// The verdict of another simulator on the start of one simulation: the same verdict, the other
 /// one, or none, because it was lost or does not take the start.
-enum class Answer : std::uint8_t { kClean, kDiscrepancy, kNone };
+enum class OpinionAnswer : std::uint8_t { kClean, kDiscrepancy, kNone };
 /// "clean", "discrepancy", "none"
-std::string_view to_string(Answer answer);
+std::string_view to_string(OpinionAnswer answer);
 
 /// One simulation of a run, made again by the other simulator.
 struct Opinion {
   std::int64_t trace = 0, sample = 0;
   bool found = false;  // a discrepancy in the run; else it was clean
   std::string cause;   // of the run's discrepancy
-  Answer answer = Answer::kNone;
+  OpinionAnswer answer = OpinionAnswer::kNone;
   std::string other;  // the cause of a discrepancy there, or why there is no answer
 };
 
@@ -36,7 +36,7 @@ struct SecondOpinion {
   std::vector<Opinion> opinions;  // discrepancies, then clean ones; each by trace and sample
   double level = 0.95;
 
-  std::int64_t count(bool found, Answer answer) const;
+  std::int64_t count(bool found, OpinionAnswer answer) const;
   /// No more than this share of the simulations that are clean in the run are anything else there,
   /// with confidence `level`: by Clopper and Pearson, no answer taken for the worst. 1 without any.
   double disagreement_upper() const;

@@ -81,19 +81,19 @@ std::string to_string(const RateClaim& claim) {
   return fmt::format("from {:.10g} to {:.10g} %", 100 * claim.lower, 100 * claim.upper);
 }
 
-Evidence weigh(const RateClaim& claim, const RateCounts& counts) {
+RateVerdict weigh(const RateClaim& claim, const RateCounts& counts) {
   require_rate_counts(counts);
   const double tail = 1.0 - claim.confidence_level;
   const std::int64_t most = counts.failures + counts.lost, least = counts.failures;
   if (shows_below(most, counts, claim.upper, tail) &&
       shows_above(least, counts, claim.lower, tail)) {
-    return Evidence::kSupports;
+    return RateVerdict::kSupports;
   }
   const bool two_sided = claim.lower > 0.0 && claim.upper < 1.0;
   const double share = two_sided ? 0.5 * tail : tail;
   const bool above = claim.upper < 1.0 && shows_above(least, counts, claim.upper, share);
   const bool below = claim.lower > 0.0 && shows_below(most, counts, claim.lower, share);
-  return above || below ? Evidence::kRefutes : Evidence::kTooLittle;
+  return above || below ? RateVerdict::kRefutes : RateVerdict::kTooLittle;
 }
 
 bool can_support(const RateClaim& claim, std::int64_t runs, bool fixed) {
@@ -124,7 +124,7 @@ std::optional<std::int64_t> runs_to_tell(const RateClaim& claim, const RateCount
   return first_enough(counts.runs, most, [&](std::int64_t runs) {
     RateCounts more{runs, scaled(counts.failures, runs), 0, counts.fixed};
     more.lost = scaled(counts.failures + counts.lost, runs) - more.failures;
-    return weigh(claim, more) != Evidence::kTooLittle;
+    return weigh(claim, more) != RateVerdict::kTooLittle;
   });
 }
 

@@ -25,7 +25,7 @@ struct RateCounts {
   bool fixed = true;          // was `runs` fixed in advance? Else it may depend on the results
 };
 
-enum class Evidence : std::uint8_t {
+enum class RateVerdict : std::uint8_t {
   kSupports,   // the claim is true
   kRefutes,    // it is false
   kTooLittle,  // neither can be said with this confidence
@@ -36,7 +36,7 @@ enum class Evidence : std::uint8_t {
 /// false claim, and of refutation of a true one, is at most 1 - C each. Support takes the bounds of
 /// both sides at C, which is enough for both together (an intersection-union test); refutation
 /// takes one of them, at 1 - (1-C)/2 where there are two.
-Evidence weigh(const RateClaim& claim, const RateCounts& counts);
+RateVerdict weigh(const RateClaim& claim, const RateCounts& counts);
 
 /// Can this number of runs support the claim, whatever their results? With `fixed` false: can it be
 /// supported by this number or earlier?

@@ -13,7 +13,7 @@ bool is_axis_of_world(const Eigen::Vector3d& direction) {
   return direction.cwiseAbs().maxCoeff() > 1.0 - 1e-12;
 }
 
-AxisExtent extent_of_box(const Bounds& box, const Eigen::Vector3d& direction) {
+AxisExtent extent_of_box(const BodyBounds& box, const Eigen::Vector3d& direction) {
   return {direction.dot(0.5 * (box.low + box.high)),
           0.5 * direction.cwiseAbs().dot(box.high - box.low)};
 }

@@ -8,7 +8,7 @@
 namespace parallax::harness {
 namespace {
 
-Eigen::Vector3d middle(const Bounds& bounds) { return 0.5 * (bounds.low + bounds.high); }
+Eigen::Vector3d middle(const BodyBounds& bounds) { return 0.5 * (bounds.low + bounds.high); }
 
 }  // namespace
 
@@ -21,8 +21,8 @@ Jaws::Jaws(const ArmSpec& spec, const PhysicsWorld& world) {
   const Eigen::Matrix3d R_PW = world.rotation(palm).transpose();
   const BodyShape& near_shape = layout.bodies[near_pad].shapes.front();
   const BodyShape& far_shape = layout.bodies[far_pad].shapes.front();
-  const Bounds near = world.bounds(near_pad, near_shape);
-  const Bounds far = world.bounds(far_pad, far_shape);
+  const BodyBounds near = world.bounds(near_pad, near_shape);
+  const BodyBounds far = world.bounds(far_pad, far_shape);
   // The gap lies along the way of the finger, whatever else the pads are beside each other.
   const Eigen::Vector3d axis = finger.axis_W.normalized();
   closing_sign_ = axis.dot(middle(near) - middle(far)) > 0.0 ? 1.0 : -1.0;

@@ -24,17 +24,17 @@ Probe PhysicsWorld::placed(BodyId id, const BodyShape& shape) const {
   return {shape.size_m, p_WS, R_WB * Eigen::AngleAxisd(shape.yaw_rad, Eigen::Vector3d::UnitZ())};
 }
 
-Bounds PhysicsWorld::bounds(BodyId id, const BodyShape& shape) const {
+BodyBounds PhysicsWorld::bounds(BodyId id, const BodyShape& shape) const {
   const Probe box = placed(id, shape);
   const auto [low, high] = span(box.form, box.size_m, box.hull.get(), box.R_WS);
-  return Bounds{box.p_WS + low, box.p_WS + high};
+  return BodyBounds{box.p_WS + low, box.p_WS + high};
 }
 
-Bounds PhysicsWorld::bounds(BodyId id) const {
+BodyBounds PhysicsWorld::bounds(BodyId id) const {
   const std::vector<BodyShape>& shapes = layout().bodies[id].shapes;
-  Bounds all = bounds(id, shapes.front());
+  BodyBounds all = bounds(id, shapes.front());
   for (const BodyShape& shape : shapes) {
-    const Bounds one = bounds(id, shape);
+    const BodyBounds one = bounds(id, shape);
     all.low = all.low.cwiseMin(one.low);
     all.high = all.high.cwiseMax(one.high);
   }

@@ -40,7 +40,7 @@ struct Overlap {
 };
 
 /// Axis-aligned box around a body [m].
-struct Bounds {
+struct BodyBounds {
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
 };
 
@@ -134,8 +134,8 @@ class PhysicsWorld {
 
   /// One shape of the body, where it is now.
   Probe placed(BodyId id, const BodyShape& shape) const;
-  Bounds bounds(BodyId id) const;
-  Bounds bounds(BodyId id, const BodyShape& shape) const;  // of one shape of the body
+  BodyBounds bounds(BodyId id) const;
+  BodyBounds bounds(BodyId id, const BodyShape& shape) const;  // of one shape of the body
 };
 
 /// The engine's world made from `spec`, which must pass check_world.

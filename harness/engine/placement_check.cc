@@ -168,7 +168,7 @@ double stack_height_m(const PhysicsWorld& world) {
   double height_m = 0.0;
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
     if (!layout.is_free[i]) continue;
-    const Bounds bounds = world.bounds(layout.bodies.id_at(i));
+    const BodyBounds bounds = world.bounds(layout.bodies.id_at(i));
     height_m += (bounds.high - bounds.low).maxCoeff();
   }
   return height_m;

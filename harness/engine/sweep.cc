@@ -17,11 +17,11 @@
 namespace parallax::harness {
 namespace {
 
-struct Extent {
+struct SlabExtent {
   double low = 0.0, high = 0.0;
 };
 
-Extent extent_along(const Probe& box, const Eigen::Vector3d& direction) {
+SlabExtent extent_along(const Probe& box, const Eigen::Vector3d& direction) {
   const double middle = box.p_WS.dot(direction);
   const double half =
       0.5 * (box.R_WS.transpose() * direction).cwiseAbs().dot(box.size_m.cwiseAbs());
@@ -40,7 +40,7 @@ double overlap_across(const Probe& a, const Probe& b, const Eigen::Vector3d& ahe
       const Eigen::Vector3d normal = ahead.cross(box->R_WS.col(i));
       if (normal.norm() < kSmall) continue;
       const Eigen::Vector3d across = normal.normalized();
-      const Extent one = extent_along(a, across), other = extent_along(b, across);
+      const SlabExtent one = extent_along(a, across), other = extent_along(b, across);
       const double overlap = std::min(one.high - other.low, other.high - one.low);
       if (overlap <= 0.0) return 0.0;
       if (!level || std::abs(across.z()) < kSmall) least = std::min(least, overlap);
@@ -48,7 +48,7 @@ double overlap_across(const Probe& a, const Probe& b, const Eigen::Vector3d& ahe
   }
   if (level) {
     const Eigen::Vector3d across = ahead.cross(Eigen::Vector3d::UnitZ());
-    const Extent one = extent_along(a, across), other = extent_along(b, across);
+    const SlabExtent one = extent_along(a, across), other = extent_along(b, across);
     least = std::min({least, one.high - other.low, other.high - one.low});
   }
   return std::max(least, 0.0);
@@ -103,10 +103,10 @@ std::optional<double> Sweep::clearance_of(const Obstacle& hit, const Eigen::Vect
     if (part.name != hit.part) continue;
     const Probe moved{part.probe.size_m, part.probe.p_WS + offset, part.probe.R_WS, part.probe.form,
                       part.probe.hull};
-    const Extent begin = extent_along(moved, ahead);
+    const SlabExtent begin = extent_along(moved, ahead);
     for (const BodyShape& shape : world_.layout().bodies[*id].shapes) {
       const Probe box = world_.placed(*id, shape);
-      const Extent there = extent_along(box, ahead);
+      const SlabExtent there = extent_along(box, ahead);
       if (there.high < begin.low || there.low > begin.high + way.norm()) continue;
       most = std::max(most, overlap_across(moved, box, ahead));
     }

@@ -169,24 +169,24 @@ class GeometryChecker {
 constexpr double kOpeningRounding_m = 1e-6;
 
 /// Something that pads are to close on.
-struct Grip {
+struct NeededGrip {
   std::string path;  // "bodies/spoon1/grasp"
   double width_m = 0.0;
   double effort_n = 0.0;  // 0: as the action says
 };
 
 /// The grip widths and the force that an arm's pads are capable of.
-struct GripRange {
+struct PadRange {
   const ArmSpec* arm = nullptr;
   double narrowest_m = 0.0, widest_m = 0.0;  // by the stops of the finger
   double max_force_n = 0.0;                  // of its motor
-  bool grips(const Grip& grip) const {
+  bool grips(const NeededGrip& grip) const {
     return std::min(arm->opening_m, widest_m) > grip.width_m && narrowest_m < grip.width_m;
   }
 };
 
-std::vector<Grip> grips_of(const WorldSpec& spec) {
-  std::vector<Grip> grips;
+std::vector<NeededGrip> grips_of(const WorldSpec& spec) {
+  std::vector<NeededGrip> grips;
   for (const BodySpec& body : spec.bodies) {
     if (!body.grasp) continue;
     grips.push_back({"bodies/" + body.name + "/grasp", body.grasp->width_m, body.grasp->effort_n});
@@ -238,14 +238,14 @@ class GripperChecker {
 
   void run() {
     const auto before = problems_.size();
-    for (const GripRange& range : ranges_) check(range);
+    for (const PadRange& range : ranges_) check(range);
     if (problems_.size() != before) return;  // all that follows from it would be reported, too
     double widest_m = 0.0, strongest_n = 0.0;
-    for (const GripRange& range : ranges_) {
+    for (const PadRange& range : ranges_) {
       widest_m = std::max(widest_m, range.arm->opening_m);
       strongest_n = std::max(strongest_n, range.max_force_n);
     }
-    for (const Grip& grip : grips_) {
+    for (const NeededGrip& grip : grips_) {
       if (grip.effort_n > strongest_n) {
         problems_.add(grip.path + "/effort_n",
                       fmt::format("is {:g} N, but no gripper's motor exerts more than {:g} N",
@@ -253,7 +253,7 @@ class GripperChecker {
         continue;
       }
       const bool held = std::any_of(ranges_.begin(), ranges_.end(),
-                                    [&](const GripRange& range) { return range.grips(grip); });
+                                    [&](const PadRange& range) { return range.grips(grip); });
       if (held) continue;
       problems_.add(grip.path + "/width_m",
                     widest_m <= grip.width_m
@@ -264,7 +264,7 @@ class GripperChecker {
   }
 
  private:
-  void check(const GripRange& range) {
+  void check(const PadRange& range) {
     const ArmSpec& arm = *range.arm;
     const std::string opening = "robot/arms/" + arm.name + "/opening_m";
     if (arm.opening_m > range.widest_m + kOpeningRounding_m ||
@@ -275,10 +275,10 @@ class GripperChecker {
       return;
     }
     if (grips_.empty() || std::any_of(grips_.begin(), grips_.end(),
-                                      [&](const Grip& grip) { return range.grips(grip); })) {
+                                      [&](const NeededGrip& grip) { return range.grips(grip); })) {
       return;
     }
-    const bool narrow = std::all_of(grips_.begin(), grips_.end(), [&](const Grip& grip) {
+    const bool narrow = std::all_of(grips_.begin(), grips_.end(), [&](const NeededGrip& grip) {
       return grip.width_m >= arm.opening_m;
     });
     problems_.add(
@@ -289,8 +289,8 @@ class GripperChecker {
   }
 
   ProblemList& problems_;
-  std::vector<Grip> grips_;
-  std::vector<GripRange> ranges_;
+  std::vector<NeededGrip> grips_;
+  std::vector<PadRange> ranges_;
 };
 
 void check_geometry(const WorldSpec& spec, ProblemList& problems) {

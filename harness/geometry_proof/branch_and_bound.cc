@@ -21,7 +21,7 @@
 namespace parallax::harness {
 namespace {
 
-struct Node {
+struct OpenBox {
   StartBox bounds;
   std::vector<std::uint32_t> questions;
   std::vector<double> influence;
@@ -32,7 +32,7 @@ struct Node {
 
 /// The largest first, of these the oldest.
 struct Later {
-  bool operator()(const Node& a, const Node& b) const {
+  bool operator()(const OpenBox& a, const OpenBox& b) const {
     if (a.halvings != b.halvings) return a.halvings > b.halvings;
     return a.number > b.number;
   }
@@ -42,7 +42,7 @@ double share_of(int halvings) { return std::ldexp(1.0, -halvings); }
 
 /// The variable to halve: what sways the open question most, seen over the box; where nothing
 /// does, the one that is widest against its range. None if all are too narrow.
-std::optional<std::size_t> widest(const Node& node, const StartBox& whole, double finest) {
+std::optional<std::size_t> widest(const OpenBox& node, const StartBox& whole, double finest) {
   std::optional<std::size_t> best;
   double most = -1.0;
   for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -69,15 +69,16 @@ const DecidedBox* box_of(const std::vector<DecidedBox>& boxes, const std::vector
   return nullptr;
 }
 
-ProofResult prove(const GeometricCheck& check, const StartBox& whole, const ProofLimits& limits) {
+ProofResult prove(const GeometricCheck& check, const StartBox& whole,
+                  const SubdivisionLimits& limits) {
   ProofResult result;
-  std::priority_queue<Node, std::vector<Node>, Later> open;
+  std::priority_queue<OpenBox, std::vector<OpenBox>, Later> open;
   std::int64_t numbers = 0;
-  const auto give_up = [&](const Node& node) {
+  const auto give_up = [&](const OpenBox& node) {
     result.open += share_of(node.halvings);
     result.boxes.push_back({node.bounds, BoxVerdict::kOpen, node.culprit});
   };
-  const auto examine = [&](Node node) {
+  const auto examine = [&](OpenBox node) {
     const auto finding = check.examine(node.bounds, node.questions);
     ++result.examined;
     const double share = share_of(node.halvings);
@@ -99,7 +100,7 @@ ProofResult prove(const GeometricCheck& check, const StartBox& whole, const Proo
     const double undecided = 1.0 - result.safe - result.refuted - result.open;
     const bool enough = result.examined + 2 > limits.boxes || undecided <= limits.open_share;
     if (result.stopped || enough) break;
-    Node node = open.top();
+    OpenBox node = open.top();
     open.pop();
     const auto axis = widest(node, whole, limits.finest);
     if (!axis) {
@@ -108,7 +109,7 @@ ProofResult prove(const GeometricCheck& check, const StartBox& whole, const Proo
     }
     const Bounds1 range = node.bounds[*axis];
     const double middle = 0.5 * range.lower + 0.5 * range.upper;
-    Node low = node, high = std::move(node);
+    OpenBox low = node, high = std::move(node);
     low.bounds[*axis].upper = middle;
     high.bounds[*axis].lower = middle;
     ++low.halvings, ++high.halvings;

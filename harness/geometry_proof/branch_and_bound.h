@@ -10,7 +10,7 @@
 
 namespace parallax::harness {
 
-struct ProofLimits {
+struct SubdivisionLimits {
   std::int64_t boxes = 20'000;  // that may be examined
   double open_share = 0.001;    // less need not be decided
   double finest = 1e-4;         // share of a variable's range below which it is not halved
@@ -40,6 +40,7 @@ struct ProofResult {
 /// Halves boxes, the largest first, along the variable that matters most, until all but a share of
 /// the region is decided or the limits are met. The same input gives the same boxes. Boxes are
 /// halved in their middles only, so that a list of them can be checked to fill the region.
-ProofResult prove(const GeometricCheck& check, const StartBox& whole, const ProofLimits& limits);
+ProofResult prove(const GeometricCheck& check, const StartBox& whole,
+                  const SubdivisionLimits& limits);
 
 }  // namespace parallax::harness

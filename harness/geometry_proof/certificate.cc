@@ -18,7 +18,7 @@ void add_share(const DecidedBox& box, const StartBox& region, TestCertificate& t
 }
 
 std::vector<ActionCertificate> certify(const std::vector<ProvableAction>& actions,
-                                       const ProofLimits& limits) {
+                                       const SubdivisionLimits& limits) {
   std::vector<ActionCertificate> all;
   for (const ProvableAction& action : actions) {
     ActionCertificate one{

@@ -28,7 +28,7 @@ struct ActionCertificate {
 };
 
 /// The proof of a trace from one initial state, with all data needed to check it again.
-struct Certificate {
+struct GeometryCertificate {
   std::string scenario;
   std::string scenario_hash;  // over all its texts
   std::int64_t trace = 0;
@@ -43,7 +43,7 @@ struct Certificate {
 
 /// Proves the tests of these actions, each box confirmed by the second evaluation.
 std::vector<ActionCertificate> certify(const std::vector<ProvableAction>& actions,
-                                       const ProofLimits& limits);
+                                       const SubdivisionLimits& limits);
 
 /// Share of the region that a box is.
 double volume_share(const StartBox& box, const StartBox& region);
@@ -53,8 +53,9 @@ void add_share(const DecidedBox& box, const StartBox& region, TestCertificate& t
 /// Writes a certificate as JSON, and reads one; a text describes the fault of one that cannot be
 /// read. Every member is required. Derived numbers are checked: the shares of a test, and the
 /// number of boxes examined, against its boxes.
-std::string certificate_json(const Certificate& certificate);
-std::optional<std::string> read_certificate(std::string_view text, Certificate& certificate);
+std::string certificate_json(const GeometryCertificate& certificate);
+std::optional<std::string> read_certificate(std::string_view text,
+                                            GeometryCertificate& certificate);
 
 /// Do the boxes fill the region without overlapping, having come from halving it?
 bool fill(const std::vector<DecidedBox>& boxes, const StartBox& region);
@@ -95,8 +96,8 @@ struct CertificateCheck {
     return mismatch.empty() && confirmed > 0 && unconfirmed == 0 && wrong == 0;
   }
 };
-CertificateCheck check_certificate(const Certificate& certificate, const ProofSubject& subject,
-                                   const std::atomic<bool>* stop);
+CertificateCheck check_certificate(const GeometryCertificate& certificate,
+                                   const ProofSubject& subject, const std::atomic<bool>* stop);
 
 /// Pieces that the second evaluation may cut a box into.
 inline constexpr int kSecondEffort = 1 << 12;

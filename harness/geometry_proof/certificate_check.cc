@@ -90,8 +90,8 @@ std::vector<std::string> drawn_variables(const StartCuboid& region, StartBox& bo
   return names;
 }
 
-CertificateCheck check_certificate(const Certificate& certificate, const ProofSubject& subject,
-                                   const std::atomic<bool>* stop) {
+CertificateCheck check_certificate(const GeometryCertificate& certificate,
+                                   const ProofSubject& subject, const std::atomic<bool>* stop) {
   CertificateCheck out;
   StartBox region;
   if (drawn_variables(subject.region, region) != certificate.variables ||

@@ -218,7 +218,7 @@ ActionCertificate read_action(Members& in, const Json& json, const StartBox& reg
 
 }  // namespace
 
-std::string certificate_json(const Certificate& certificate) {
+std::string certificate_json(const GeometryCertificate& certificate) {
   Json assumptions = Json::object(), sliders = Json::object();
   for (const AssumptionField& field : assumption_fields()) {
     assumptions[field.name] = certificate.assumptions.*field.value;
@@ -257,7 +257,8 @@ std::string certificate_json(const Certificate& certificate) {
   return base::json_text(document) + "\n";
 }
 
-std::optional<std::string> read_certificate(std::string_view text, Certificate& certificate) {
+std::optional<std::string> read_certificate(std::string_view text,
+                                            GeometryCertificate& certificate) {
   const Json document = base::parse_ordered_json(text);
   const Json* kind = document.is_discarded() ? nullptr : base::json_member(document, "kind");
   if (kind == nullptr || *kind != kKind) return "it is no geometry proof of parallax";

@@ -31,7 +31,7 @@ enum class Growth : std::uint8_t { kNone, kSome, kThere };
 
 class SwingSearch {
  public:
-  SwingSearch(const SerialChain& chain, const PostureTest& test, const SearchOptions& options)
+  SwingSearch(const SerialChain& chain, const PostureTest& test, const ChainSearchOptions& options)
       : chain_(chain), test_(test), options_(options) {}
 
   std::vector<JointVector> run(const JointVector& start, const JointVector& goal) const {
@@ -107,14 +107,14 @@ class SwingSearch {
 
   const SerialChain& chain_;
   const PostureTest& test_;
-  const SearchOptions& options_;
+  const ChainSearchOptions& options_;
 };
 
 }  // namespace
 
 std::vector<JointVector> search_swings(const SerialChain& chain, const JointVector& start,
                                        const JointVector& goal, const PostureTest& test,
-                                       const SearchOptions& options) {
+                                       const ChainSearchOptions& options) {
   return SwingSearch(chain, test, options).run(start, goal);
 }
 

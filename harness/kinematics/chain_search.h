@@ -7,7 +7,7 @@
 
 namespace parallax::harness {
 
-struct SearchOptions {
+struct ChainSearchOptions {
   double step = 0.05;  // between postures that are asked about [rad or m]
   double grow = 0.4;   // of a tree at a time
   int rounds = 400;    // after which it is given up
@@ -22,6 +22,6 @@ using PostureTest = std::function<bool(const JointVector&)>;
 /// found. Cost: a test for each step of each branch, up to some ten thousand.
 std::vector<JointVector> search_swings(const SerialChain& chain, const JointVector& start,
                                        const JointVector& goal, const PostureTest& test,
-                                       const SearchOptions& options = {});
+                                       const ChainSearchOptions& options = {});
 
 }  // namespace parallax::harness

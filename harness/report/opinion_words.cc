@@ -57,9 +57,9 @@ std::string cause_sentence(const SecondOpinion& opinion, const CauseOpinion& of)
 
 std::string clean_sentence(const SecondOpinion& opinion) {
   const auto first = name_of(opinion.first), other = name_of(opinion.other);
-  const auto clean = opinion.count(false, Answer::kClean);
-  const auto parted = opinion.count(false, Answer::kDiscrepancy);
-  const auto none = opinion.count(false, Answer::kNone);
+  const auto clean = opinion.count(false, OpinionAnswer::kClean);
+  const auto parted = opinion.count(false, OpinionAnswer::kDiscrepancy);
+  const auto none = opinion.count(false, OpinionAnswer::kNone);
   const auto all = clean + parted + none;
   if (all == 0)
     return fmt::format("no simulation was clean in {}: nothing is said of those", first);
@@ -69,7 +69,7 @@ std::string clean_sentence(const SecondOpinion& opinion) {
     text += fmt::format(", {} discrepancies of {} alone", parted, other);
     const auto at = std::find_if(
         opinion.opinions.begin(), opinion.opinions.end(),
-        [](const auto& one) { return !one.found && one.answer == Answer::kDiscrepancy; });
+        [](const auto& one) { return !one.found && one.answer == OpinionAnswer::kDiscrepancy; });
     text += fmt::format(" (such as {}.{}: {})", at->trace, at->sample, at->other);
   }
   if (none > 0) text += fmt::format(", {} without an answer", none);
@@ -112,9 +112,10 @@ std::vector<CauseOpinion> opinions_by_cause(const SecondOpinion& opinion) {
       known->trace = one.trace;
       known->sample = one.sample;
     }
-    if (one.answer == Answer::kClean) ++known->only;
-    if (one.answer == Answer::kNone && known->unanswered++ == 0) known->why_unanswered = one.other;
-    if (one.answer != Answer::kDiscrepancy) continue;
+    if (one.answer == OpinionAnswer::kClean) ++known->only;
+    if (one.answer == OpinionAnswer::kNone && known->unanswered++ == 0)
+      known->why_unanswered = one.other;
+    if (one.answer != OpinionAnswer::kDiscrepancy) continue;
     ++known->both;
     if (std::find(known->others.begin(), known->others.end(), one.other) == known->others.end()) {
       known->others.push_back(one.other);
@@ -154,9 +155,9 @@ std::string opinion_json(const SecondOpinion& opinion) {
                            {"causes", std::move(causes)},
                            {"clean",
                             {{"asked", opinion.clean_asked},
-                             {"clean", opinion.count(false, Answer::kClean)},
-                             {"discrepancies", opinion.count(false, Answer::kDiscrepancy)},
-                             {"unanswered", opinion.count(false, Answer::kNone)},
+                             {"clean", opinion.count(false, OpinionAnswer::kClean)},
+                             {"discrepancies", opinion.count(false, OpinionAnswer::kDiscrepancy)},
+                             {"unanswered", opinion.count(false, OpinionAnswer::kNone)},
                              {"confidence", opinion.level},
                              {"disagreement_below", opinion.disagreement_upper()}}},
                            {"simulations", std::move(each)},

@@ -139,10 +139,10 @@ std::string sequential_text(const IndifferenceRegion& region, SequentialAnswer a
 }
 
 /// Whether it came out, before all runs were made, that the rate is as asked.
-std::string known_text(const RateClaim& claim, Evidence evidence) {
-  const auto* is = evidence == Evidence::kSupports ? "it is" : "it is not";
+std::string known_text(const RateClaim& claim, RateVerdict evidence) {
+  const auto* is = evidence == RateVerdict::kSupports ? "it is" : "it is not";
   return fmt::format("  {} {} (with {} confidence)\n",
-                     evidence == Evidence::kTooLittle ? "not known whether it is" : is,
+                     evidence == RateVerdict::kTooLittle ? "not known whether it is" : is,
                      to_string(claim), level_text(claim.confidence_level));
 }
 
@@ -244,8 +244,8 @@ std::string rates_json(const RatesResult& result) {
     if (!result.until_known) continue;
     const auto evidence = result.evidence(trace);
     object["claim"] = {{"rate", to_string(*result.until_known)}, {"holds", nullptr}};
-    if (evidence != Evidence::kTooLittle) {
-      object["claim"]["holds"] = evidence == Evidence::kSupports;
+    if (evidence != RateVerdict::kTooLittle) {
+      object["claim"]["holds"] = evidence == RateVerdict::kSupports;
     }
     if (result.indifference)
       add_sequential(*result.indifference, trace.sequential, object["claim"]);

@@ -42,13 +42,13 @@ std::string end_of(PathEnd end, const std::string& detail) {
   return fmt::format("ended by {}", to_string(end));
 }
 
-std::string_view confirmation_key(Confirmation confirmation) {
+std::string_view confirmation_key(RepeatResult confirmation) {
   switch (confirmation) {
-    case Confirmation::kBitEqual:
+    case RepeatResult::kBitEqual:
       return "bit-equal";
-    case Confirmation::kDiffers:
+    case RepeatResult::kDiffers:
       return "differs";
-    case Confirmation::kLost:
+    case RepeatResult::kLost:
       break;
   }
   return "lost";
@@ -56,11 +56,11 @@ std::string_view confirmation_key(Confirmation confirmation) {
 
 std::string confirmation(const Discrepancy& found) {
   switch (found.confirmation) {
-    case Confirmation::kBitEqual:
+    case RepeatResult::kBitEqual:
       return "repeated bit for bit";
-    case Confirmation::kDiffers:
+    case RepeatResult::kDiffers:
       return "NOT repeatable: the simulator is not deterministic";
-    case Confirmation::kLost:
+    case RepeatResult::kLost:
       break;
   }
   return "not repeated: the simulator was lost";

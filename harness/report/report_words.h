@@ -18,7 +18,7 @@ std::string verdict_word(CampaignVerdict verdict, bool color);
 /// "the plan fails with grasp-failed"
 std::string end_of(PathEnd end, const std::string& detail);
 /// "bit-equal", "differs", "lost": as report.json has it.
-std::string_view confirmation_key(Confirmation confirmation);
+std::string_view confirmation_key(RepeatResult confirmation);
 /// "repeated bit for bit"
 std::string confirmation(const Discrepancy& found);
 /// "stopped before all were explored"

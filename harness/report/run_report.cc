@@ -154,8 +154,8 @@ ReportedDiscrepancy reported_discrepancy(const ReportJson& entry) {
   if (reported_text(entry, "kind") == to_string(DiscrepancyKind::kTransient)) {
     found.kind = DiscrepancyKind::kTransient;
   }
-  found.confirmation = enumerator(reported_text(entry, "repeated"), Confirmation::kLost,
-                                  confirmation_key, Confirmation::kLost);
+  found.confirmation = enumerator(reported_text(entry, "repeated"), RepeatResult::kLost,
+                                  confirmation_key, RepeatResult::kLost);
   const auto& cause = reported_member(entry, "cause");
   found.cause = {reported_text(cause, "text"), reported_text(cause, "reason"),
                  reported_text(cause, "event"), reported_texts(cause, "fluents")};

@@ -59,12 +59,12 @@ DiscrepancyStanding standing_of(const CampaignResult& result, const Discrepancy&
   for (const auto& one : opinion.opinions) {
     if (!one.found || one.trace != found.trace || one.sample != found.sample) continue;
     switch (one.answer) {
-      case Answer::kDiscrepancy:
+      case OpinionAnswer::kDiscrepancy:
         return {Standing::kStands,
                 fmt::format("confirmed: {} disagrees with the model as well", other)};
-      case Answer::kClean:
+      case OpinionAnswer::kClean:
         return {Standing::kInDoubt, fmt::format("in doubt: {} agrees with the model", other)};
-      case Answer::kNone:
+      case OpinionAnswer::kNone:
         break;
     }
     out.words += fmt::format("; {} gave no answer", other);

@@ -6,7 +6,7 @@
 namespace parallax::harness {
 namespace {
 
-bool overlap_in_plan(const Bounds& a, const Bounds& b) {
+bool overlap_in_plan(const BodyBounds& a, const BodyBounds& b) {
   return a.low.x() < b.high.x() && b.low.x() < a.high.x() && a.low.y() < b.high.y() &&
          b.low.y() < a.high.y();
 }
@@ -59,14 +59,14 @@ std::optional<BodyId> GraspMonitor::held_body(std::uint32_t gripper) const {
 
 double GraspMonitor::clearance_m(BodyId id) const {
   const WorldLayout& layout = world_.layout();
-  const Bounds self = world_.bounds(id);
+  const BodyBounds self = world_.bounds(id);
   double highest_support_m = 0.0;  // the floor
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
     const BodyId other = layout.bodies.id_at(i);
     const bool robot = robot_assembly_ != 0 && layout.assembly_of[i] == robot_assembly_;
     if (other == id || robot || !layout.bodies[other].collides) continue;
     for (const BodyShape& shape : layout.bodies[other].shapes) {
-      const Bounds support = world_.bounds(other, shape);
+      const BodyBounds support = world_.bounds(other, shape);
       if (support.low.z() >= self.low.z() || !overlap_in_plan(self, support)) continue;
       highest_support_m = std::max(highest_support_m, support.high.z());
     }

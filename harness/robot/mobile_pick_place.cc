@@ -148,7 +148,7 @@ class Place final : public MobileController {
     goal_ = target_point();
     const double hover_m = number("hover_m");
     // The load keeps its place in the gripper: its lowest point is to come to the place.
-    const Bounds load = world().bounds(*object_);
+    const BodyBounds load = world().bounds(*object_);
     const Eigen::Vector3d p = world().position(*object_);
     const Eigen::Vector3d from_load = arm().tool() - Eigen::Vector3d(p.x(), p.y(), load.low.z());
     set_down_ = goal_ + from_load;

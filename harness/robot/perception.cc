@@ -14,8 +14,8 @@ namespace parallax::harness {
 namespace {
 
 /// Bounding box of a body in its own frame.
-Bounds own_bounds(const BodySpec& body) {
-  Bounds all;
+BodyBounds own_bounds(const BodySpec& body) {
+  BodyBounds all;
   bool first = true;
   for (const BodyShape& shape : body.shapes) {
     const auto [from, to] = span(shape.form, shape.size_m, shape.hull.get(), shape_rotation(shape));
@@ -29,7 +29,7 @@ Bounds own_bounds(const BodySpec& body) {
 
 /// Points along the longest middle line of the box, in the body's frame.
 std::vector<Eigen::Vector3d> sample_points(const BodySpec& body, int count) {
-  const Bounds box = own_bounds(body);
+  const BodyBounds box = own_bounds(body);
   const Eigen::Vector3d size = box.high - box.low;
   Eigen::Index longest = 0;
   size.maxCoeff(&longest);
@@ -76,7 +76,7 @@ void Perception::reset(std::uint64_t seed) {
   errors_.reset(seed);
   gaze_ = PlaceSpec{};
   looking_ = false;
-  beliefs_.assign(beliefs_.size(), Belief{});
+  beliefs_.assign(beliefs_.size(), BodyBelief{});
 }
 
 Eigen::Vector3d Perception::from_frame(const std::string& frame, const Eigen::Vector3d& p_F) const {
@@ -125,7 +125,7 @@ std::optional<Gaze> Perception::line_of_sight() const {
 Eigen::Vector3d Perception::middle_of_chord(const Eigen::Vector3d& from, const Eigen::Vector3d& p_B,
                                             BodyId id) const {
   const BodySpec& body = world_.layout().bodies[id];
-  const Bounds box = own_bounds(body);
+  const BodyBounds box = own_bounds(body);
   const Eigen::Vector3d aim = from + (world_.position(id) + world_.rotation(id) * p_B - from);
   // Near wall and bottom, which a ray at the hollow of a bowl meets, do not lie about its middle.
   if (!is_solid_at(body, p_B)) return aim;
@@ -166,7 +166,7 @@ Sighting Perception::sight(BodyId id, int points) const {
 
 void Perception::store(BodyId id, BodyId like, const Eigen::Vector3d& p_W, double yaw_rad,
                        const std::string& frame) {
-  Belief& belief = beliefs_[id.index()];
+  BodyBelief& belief = beliefs_[id.index()];
   belief.located = true;
   belief.frame = frame;
   const double below_m = world_.position(like).z() - world_.bounds(like).low.z();
@@ -193,13 +193,13 @@ void Perception::believe_as_is(BodyId id) {
 }
 
 std::optional<Eigen::Vector3d> Perception::believed(BodyId id) const {
-  const Belief& belief = beliefs_[id.index()];
+  const BodyBelief& belief = beliefs_[id.index()];
   if (!belief.located) return std::nullopt;
   return from_frame(belief.frame, belief.p_F);
 }
 
 std::optional<double> Perception::believed_bottom_m(BodyId id) const {
-  const Belief& belief = beliefs_[id.index()];
+  const BodyBelief& belief = beliefs_[id.index()];
   if (!belief.located) return std::nullopt;
   return from_frame(belief.frame, {belief.p_F.x(), belief.p_F.y(), belief.bottom_F_m}).z();
 }

@@ -12,7 +12,7 @@
 namespace parallax::harness {
 
 /// The robot's belief about one body. The position moves along with the body that `frame` names.
-struct Belief {
+struct BodyBelief {
   bool perceived = false;  // the last look for it found it
   bool located = false;
   std::string frame;
@@ -63,7 +63,7 @@ class Perception {
   /// It was put down there.
   void believe_as_is(BodyId id);
 
-  const Belief& belief(BodyId id) const { return beliefs_[id.index()]; }
+  const BodyBelief& belief(BodyId id) const { return beliefs_[id.index()]; }
   DetectionErrors& errors() { return errors_; }
   /// The believed origin, now; nothing if it was never located.
   std::optional<Eigen::Vector3d> believed(BodyId id) const;
@@ -91,7 +91,7 @@ class Perception {
   Eigen::Vector3d looked_W_ = Eigen::Vector3d::Zero();  // where the place was then
   Eigen::Vector3d neck_B_ = Eigen::Vector3d::UnitX();   // direction of the gaze then
   bool looking_ = false;
-  std::vector<Belief> beliefs_;  // by BodyId
+  std::vector<BodyBelief> beliefs_;  // by BodyId
   DetectionErrors errors_;
 };
 

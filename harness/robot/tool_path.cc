@@ -247,7 +247,7 @@ std::vector<ChainWay> ArmWays::swings(const Eigen::Vector3d& to) const {
   for (int i = 1; i <= kPostures; ++i) ends.push_back(solve_inverse_from(chain, goal, i));
   std::erase_if(ends, [&](const InverseResult& end) { return !end.reached || !test(end.q); });
   // First those that one swing leads to; a search only then.
-  SearchOptions options;
+  ChainSearchOptions options;
   for (const int rounds : {0, kSearchRounds}) {
     options.rounds = rounds;
     for (const InverseResult& end : ends) {

@@ -167,7 +167,7 @@ class Pulse {
   std::thread thread_;
 };
 
-struct Answer {
+struct ActionAnswer {
   ReplyBody reply;
   bool last = false;
 };
@@ -187,7 +187,7 @@ struct Dispatcher {
   Simulator& simulator;
   bool& reset_done;
 
-  Answer operator()(const HelloRequest& hello) const {
+  ActionAnswer operator()(const HelloRequest& hello) const {
     if (std::find(hello.protocols.begin(), hello.protocols.end(), kProtocolVersion) ==
         hello.protocols.end()) {
       return {ErrorReply{"unsupported", "this simulator speaks protocol 1"}};
@@ -196,27 +196,29 @@ struct Dispatcher {
     if (info.name.empty()) return {ErrorReply{"internal", info.version}};  // it did not start
     return {HelloReply{kProtocolVersion, std::move(info)}};
   }
-  Answer operator()(const ResetRequest& reset) const {
+  ActionAnswer operator()(const ResetRequest& reset) const {
     simulator.record_motion(reset.record_interval_s);
     Outcome outcome = simulator.reset(reset.state, reset.seed);
     reset_done = outcome.status == SimStatus::kOk;
     return {OutcomeReply{std::move(outcome)}};
   }
-  Answer operator()(const ActRequest& act) const {
+  ActionAnswer operator()(const ActRequest& act) const {
     if (!reset_done) return {ErrorReply{"incorrect_state", "act before a successful reset"}};
     return {OutcomeReply{simulator.act(act.action, act.arguments, act.sim_time_limit_s)}};
   }
-  Answer operator()(const ObserveRequest&) const {
+  ActionAnswer operator()(const ObserveRequest&) const {
     if (!reset_done) return {ErrorReply{"incorrect_state", "observe before a successful reset"}};
     return {ObserveReply{simulator.observe()}};
   }
-  Answer operator()(const CloseRequest&) const { return {CloseReply{}, true}; }
-  Answer operator()(const DescribeRequest&) const { return {DescribeReply{simulator.info()}}; }
+  ActionAnswer operator()(const CloseRequest&) const { return {CloseReply{}, true}; }
+  ActionAnswer operator()(const DescribeRequest&) const {
+    return {DescribeReply{simulator.info()}};
+  }
   /// `decode_request` takes it for unknown: a worker does not offer it.
-  Answer operator()(const PerformRequest&) const {
+  ActionAnswer operator()(const PerformRequest&) const {
     return {ErrorReply{"unsupported", "no method `perform`"}};
   }
-  Answer operator()(const UnknownRequest& unknown) const {
+  ActionAnswer operator()(const UnknownRequest& unknown) const {
     return {ErrorReply{"unsupported", "no method `" + unknown.method + "`"}};
   }
 };
@@ -262,7 +264,7 @@ int serve(Simulator& simulator, int in_fd, int out_fd, const ServeOptions& optio
     }
     const Request& request = std::get<Request>(decoded);
     pulse.begin(request.id);
-    Answer answer = std::visit(Dispatcher{simulator, reset_done}, request.body);
+    ActionAnswer answer = std::visit(Dispatcher{simulator, reset_done}, request.body);
     pulse.end();
     if (is_raised(options.stop)) return 1;
     if (!out.write(encode_reply(request.id, checked(std::move(answer.reply))))) return 1;

@@ -195,11 +195,11 @@ void DifferenceFinder::prepare_refutation() {
   if (is_determined()) refutation_->require([](std::int32_t) { return false; });
 }
 
-Answer DifferenceFinder::find() { return search(std::nullopt, true); }
-Answer DifferenceFinder::find_any() { return search(std::nullopt, false); }
+DifferenceAnswer DifferenceFinder::find() { return search(std::nullopt, true); }
+DifferenceAnswer DifferenceFinder::find_any() { return search(std::nullopt, false); }
 
-Answer DifferenceFinder::find_with_fewer(std::size_t events) {
-  if (events == 0) return Answer::kNone;
+DifferenceAnswer DifferenceFinder::find_with_fewer(std::size_t events) {
+  if (events == 0) return DifferenceAnswer::kNone;
   if (!counter_) {
     std::vector<Literal> happens;
     for (const auto& atom : vocabulary_.shared) {
@@ -212,29 +212,30 @@ Answer DifferenceFinder::find_with_fewer(std::size_t events) {
   return search(~counter_->at_least(events), true);
 }
 
-Answer DifferenceFinder::find(Timepoint by) {
+DifferenceAnswer DifferenceFinder::find(Timepoint by) {
   const auto status = solve(by, std::nullopt);
   // Whatever the values of the other variables are, a clause up to `by` is violated.
-  if (status == SolveStatus::kUnsatisfiable) return Answer::kNone;
-  if (status == SolveStatus::kUnknown) return Answer::kUnknown;
-  return verify(by) == SolveStatus::kUnsatisfiable ? describe_found(by) : Answer::kUnknown;
+  if (status == SolveStatus::kUnsatisfiable) return DifferenceAnswer::kNone;
+  if (status == SolveStatus::kUnknown) return DifferenceAnswer::kUnknown;
+  return verify(by) == SolveStatus::kUnsatisfiable ? describe_found(by)
+                                                   : DifferenceAnswer::kUnknown;
 }
 
-Answer DifferenceFinder::search(std::optional<Literal> assumption, bool describes) {
+DifferenceAnswer DifferenceFinder::search(std::optional<Literal> assumption, bool describes) {
   const auto by = second_.horizon;
   for (;;) {
     const auto status = solve(by, assumption);
-    if (status == SolveStatus::kUnsatisfiable) return Answer::kNone;
-    if (status == SolveStatus::kUnknown) return Answer::kUnknown;
+    if (status == SolveStatus::kUnsatisfiable) return DifferenceAnswer::kNone;
+    if (status == SolveStatus::kUnknown) return DifferenceAnswer::kUnknown;
     // Where one call answers, a trace that is only counted need not be looked at again.
-    if (!describes && is_determined()) return Answer::kFound;
+    if (!describes && is_determined()) return DifferenceAnswer::kFound;
     const auto verified = verify(by);
     if (verified == SolveStatus::kUnsatisfiable) {
-      return describes ? describe_found(by) : Answer::kFound;
+      return describes ? describe_found(by) : DifferenceAnswer::kFound;
     }
-    if (verified == SolveStatus::kUnknown) return Answer::kUnknown;
+    if (verified == SolveStatus::kUnknown) return DifferenceAnswer::kUnknown;
     PARALLAX_REQUIRE(!is_determined(), "definitions leave nothing open but what is free");
-    if (refinements_ == 2 * max_refinements_) return Answer::kUnknown;
+    if (refinements_ == 2 * max_refinements_) return DifferenceAnswer::kUnknown;
     if (refinements_++ < max_refinements_) {
       refutation_->require([&](std::int32_t v) { return verifier_.value(Literal::positive(v)); });
     } else {
@@ -285,7 +286,7 @@ std::optional<SharedAtom> DifferenceFinder::impossible() const { return impossib
 
 /// Decodes the trace, and looks for the earliest timepoint: what rules out a part of a trace rules
 /// out the longer ones.
-Answer DifferenceFinder::describe_found(Timepoint by) {
+DifferenceAnswer DifferenceFinder::describe_found(Timepoint by) {
   trace_ = decode_trace(first_, symbols_, first_.horizon, [&](Literal literal) {
     const auto mapped = *mapped_first_->find(literal);
     return solver_->value(mapped);
@@ -302,10 +303,10 @@ Answer DifferenceFinder::describe_found(Timepoint by) {
         low = middle + 1;
         break;
       case SolveStatus::kUnknown:
-        return Answer::kUnknown;
+        return DifferenceAnswer::kUnknown;
     }
   }
-  return Answer::kFound;
+  return DifferenceAnswer::kFound;
 }
 
 std::size_t DifferenceFinder::events_before(Timepoint t) const {

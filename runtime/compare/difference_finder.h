@@ -62,7 +62,7 @@ std::shared_ptr<const Definitions> definitions_for(const CompiledModel& model,
                                                    std::optional<Literal> SharedAtom::*side,
                                                    const std::atomic<bool>* stop);
 
-enum class Answer : std::uint8_t {
+enum class DifferenceAnswer : std::uint8_t {
   kFound,
   kNone,
   kUnknown  // stopped, or given up at a limit
@@ -92,13 +92,13 @@ class DifferenceFinder {
 
   /// Is there a trace of the first model that is, up to the horizon of the second, none of the
   /// second?
-  Answer find();
+  DifferenceAnswer find();
   /// Is there one that the second rules out by an earlier timepoint? What its clauses up to then
   /// leave open may be determined by later ones, so this may be kUnknown; ask a finder for the
   /// truncated second model then.
-  Answer find(Timepoint by);
+  DifferenceAnswer find(Timepoint by);
   /// find() with fewer than `events` shared events before the horizon of the second.
-  Answer find_with_fewer(std::size_t events);
+  DifferenceAnswer find_with_fewer(std::size_t events);
 
   // After kFound, until the next call:
 
@@ -112,7 +112,7 @@ class DifferenceFinder {
   std::optional<SharedAtom> impossible() const;
   std::size_t events_before(Timepoint t) const;
   /// find(), for a trace that is only to be blocked, not described.
-  Answer find_any();
+  DifferenceAnswer find_any();
   /// Excludes traces with the same shared observables from all further answers.
   void block();
 
@@ -125,13 +125,13 @@ class DifferenceFinder {
   void add_first();
   void prepare_refutation();
   void block(Timepoint up_to);
-  Answer search(std::optional<Literal> assumption, bool describes);
+  DifferenceAnswer search(std::optional<Literal> assumption, bool describes);
   SolveStatus solve(Timepoint by, std::optional<Literal> assumption);
   SolveStatus verify(Timepoint by);
   bool is_true(const SharedAtom& atom) const;
   std::vector<Literal> observation(Timepoint by) const;
   std::optional<SharedAtom> impossible(Timepoint by) const;
-  Answer describe_found(Timepoint by);
+  DifferenceAnswer describe_found(Timepoint by);
 
   const CompiledModel& first_;
   const CompiledModel& second_;

@@ -232,7 +232,7 @@ class Direction {
   OneSided run() {
     OneSided out;
     out.answer = options_.counts_only ? finder_.find_any() : finder_.find();
-    if (out.answer == Answer::kFound) {
+    if (out.answer == DifferenceAnswer::kFound) {
       if (!options_.counts_only) {
         keep(finder_);
         find_earliest();
@@ -240,7 +240,7 @@ class Direction {
         out.witness = std::move(witness_);
       }
       if (!options_.any_difference) list(out.count);
-    } else if (out.answer == Answer::kNone) {
+    } else if (out.answer == DifferenceAnswer::kNone) {
       out.count.exact = true;
     }
     out.solve_calls = solve_calls_ + finder_.solve_calls();
@@ -263,13 +263,13 @@ class Direction {
   /// open go to the truncated second model.
   void find_earliest() {
     for (;;) {
-      auto answer = Answer::kNone;
+      auto answer = DifferenceAnswer::kNone;
       if (witness_.excluded_by > 0) answer = finder_.find(witness_.excluded_by - 1);
-      if (answer == Answer::kFound) {
+      if (answer == DifferenceAnswer::kFound) {
         keep(finder_);
         continue;
       }
-      if (answer == Answer::kUnknown && find_exactly(witness_.excluded_by - 1)) continue;
+      if (answer == DifferenceAnswer::kUnknown && find_exactly(witness_.excluded_by - 1)) continue;
       break;
     }
     find_fewest_events();
@@ -281,9 +281,9 @@ class Direction {
     DifferenceFinder finder(first_, of_first_, second, of_truncated(second), vocabulary_,
                             options_.max_refinements, options_.stop);
     const auto answer = finder.find();
-    if (answer == Answer::kFound) keep(finder);
+    if (answer == DifferenceAnswer::kFound) keep(finder);
     note(finder, answer);
-    return answer == Answer::kFound;
+    return answer == DifferenceAnswer::kFound;
   }
 
   void find_fewest_events() {
@@ -299,10 +299,10 @@ class Direction {
     const auto second = truncated(second_, by);
     DifferenceFinder finder(first_, of_first_, second, of_truncated(second), vocabulary_,
                             options_.max_refinements, options_.stop);
-    auto answer = Answer::kFound;
-    while (answer == Answer::kFound) {
+    auto answer = DifferenceAnswer::kFound;
+    while (answer == DifferenceAnswer::kFound) {
       answer = finder.find_with_fewer(witness_.events);
-      if (answer == Answer::kFound) keep(finder);
+      if (answer == DifferenceAnswer::kFound) keep(finder);
     }
     note(finder, answer);
   }
@@ -311,10 +311,10 @@ class Direction {
     return definitions_for(second, vocabulary_, &SharedAtom::second, options_.stop);
   }
 
-  void note(const DifferenceFinder& finder, Answer answer) {
+  void note(const DifferenceFinder& finder, DifferenceAnswer answer) {
     solve_calls_ += finder.solve_calls();
     refinements_ += finder.refinements();
-    if (answer == Answer::kUnknown) witness_.is_shortest = false;
+    if (answer == DifferenceAnswer::kUnknown) witness_.is_shortest = false;
   }
 
   void explain() {
@@ -326,14 +326,14 @@ class Direction {
   }
 
   void list(TraceNumber& count) {
-    auto answer = Answer::kFound;
+    auto answer = DifferenceAnswer::kFound;
     while (count.value < options_.list_limit) {
       answer = finder_.find_any();
-      if (answer != Answer::kFound) break;
+      if (answer != DifferenceAnswer::kFound) break;
       ++count.value;
       finder_.block();
     }
-    count.exact = answer == Answer::kNone;
+    count.exact = answer == DifferenceAnswer::kNone;
     if (count.value == 0) count.value = 1;  // the witness itself
   }
 
@@ -428,7 +428,7 @@ TraceDifference compare_traces(ComparedModel& first, ComparedModel& second,
   const auto of_b =
       second.definitions(out.vocabulary, &SharedAtom::second, out.horizon, options.stop);
   out.lost = Direction(a, b, out.vocabulary, of_a, of_b, options.second_edited, options).run();
-  if (options.any_difference && out.lost.answer == Answer::kFound) return out;
+  if (options.any_difference && out.lost.answer == DifferenceAnswer::kFound) return out;
   out.gained =
       Direction(b, a, exchanged(out.vocabulary), of_b, of_a, options.first_edited, options).run();
   const bool open = !out.lost.count.exact || !out.gained.count.exact;

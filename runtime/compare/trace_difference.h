@@ -39,7 +39,7 @@ struct Witness {
 
 /// The traces of one model that the other does not have, compared on what both observe.
 struct OneSided {
-  Answer answer = Answer::kUnknown;
+  DifferenceAnswer answer = DifferenceAnswer::kUnknown;
   std::optional<Witness> witness;
   TraceNumber count;
   std::int64_t solve_calls = 0;

@@ -31,7 +31,7 @@ namespace {
 constexpr std::size_t kFewAsked = 16;
 
 /// One of each class of conjugates, or each symmetry by itself.
-struct Asked {
+struct CountedSymmetry {
   ConstantMap map;   // of all constants
   mpz_class weight;  // number of symmetries that leave as many traces
 };
@@ -68,11 +68,11 @@ class Symmetries {
   }
 
   /// None: they are too many.
-  std::optional<std::vector<Asked>> run() {
+  std::optional<std::vector<CountedSymmetry>> run() {
     if (!symmetry_.constants().together.empty()) return all();
-    std::vector<Asked> asked = {{identity_, 1}};
+    std::vector<CountedSymmetry> asked = {{identity_, 1}};
     for (const auto& set : symmetry_.constants().sets) {
-      std::vector<Asked> next;
+      std::vector<CountedSymmetry> next;
       std::vector<std::uint32_t> parts;
       const auto size = static_cast<std::uint32_t>(set.size());
       for_each_partition(size, size, parts, [&](const std::vector<std::uint32_t>& cycles) {
@@ -102,14 +102,14 @@ class Symmetries {
   }
 
   /// Products of one from each level.
-  std::optional<std::vector<Asked>> all() {
+  std::optional<std::vector<CountedSymmetry>> all() {
     const auto& group = symmetry_.group();
     if (group.order() > static_cast<unsigned long>(kMostAsked)) return std::nullopt;
     std::vector<std::uint32_t> of_group;
     for (const auto& name : group.constants) of_group.push_back(numbers_.at(name));
-    std::vector<Asked> asked = {{identity_, 1}};
+    std::vector<CountedSymmetry> asked = {{identity_, 1}};
     for (auto level = group.levels.rbegin(); level != group.levels.rend(); ++level) {
-      std::vector<Asked> next;
+      std::vector<CountedSymmetry> next;
       for (std::size_t i = 0; i < level->orbit.size(); ++i) {
         auto to = identity_;
         if (level->to.empty()) {

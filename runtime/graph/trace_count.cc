@@ -152,9 +152,9 @@ mpz_class draw_below(const mpz_class& bound, std::mt19937_64& random) {
 
 }  // namespace
 
-TraceSample sample_traces(const CompiledModel& model, const TraceQuery& query, std::size_t size,
+DrawnTraces sample_traces(const CompiledModel& model, const TraceQuery& query, std::size_t size,
                           std::uint64_t seed) {
-  TraceSample sample;
+  DrawnTraces sample;
   const auto counted = count_traces(model, query);
   sample.population = counted.count;
   sample.complete = counted.complete;

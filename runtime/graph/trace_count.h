@@ -24,7 +24,7 @@ struct TraceCount {
 /// components, or else one by one.
 TraceCount count_traces(const CompiledModel& model, const TraceQuery& query);
 
-struct TraceSample {
+struct DrawnTraces {
   /// Numbered 1 .. size as drawn; each was any of `population` traces with equal probability,
   /// whatever the others. Empty if there is no trace or the search was stopped.
   std::vector<Trace> traces;
@@ -37,7 +37,7 @@ struct TraceSample {
 /// Draws `size` traces uniformly, with replacement. The same seed draws the same traces whatever
 /// the strategy. With the graph each costs one walk, by components some counts; without both all
 /// traces are found twice.
-TraceSample sample_traces(const CompiledModel& model, const TraceQuery& query, std::size_t size,
+DrawnTraces sample_traces(const CompiledModel& model, const TraceQuery& query, std::size_t size,
                           std::uint64_t seed);
 
 }  // namespace parallax::runtime

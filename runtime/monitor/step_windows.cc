@@ -68,9 +68,9 @@ bool can_begin(const CompiledModel& model) {
 }
 
 /// Which clauses are about the plan, and which define what both axioms and plan may use.
-class Parting {
+class WindowParting {
  public:
-  explicit Parting(const StepWindows& windows) : windows_(windows), model_(windows.model) {
+  explicit WindowParting(const StepWindows& windows) : windows_(windows), model_(windows.model) {
     definitions_.resize(model_.fixed.size());
     for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
       const auto clause = model_.clauses[c];
@@ -179,7 +179,7 @@ std::string split_parts(StepWindows& out, const std::vector<std::int8_t>& values
     out.plan = {{std::move(nothing)}, {0}, 0};
     return {};
   }
-  const Parting parting(out);
+  const WindowParting parting(out);
   if (const auto shared = parting.shared_predicate(); !shared.empty()) {
     return "`" + shared + "` is open, and both the axioms and the plan ask for it";
   }

@@ -290,8 +290,8 @@ TEST_CASE("two models that were not compared are not called equal") {
   runtime::DifferenceOptions options;
   options.stop = &stop;
   const auto found = runtime::compare_traces(first.compiled, second.compiled, options);
-  CHECK(found.lost.answer == runtime::Answer::kUnknown);
-  CHECK(found.gained.answer == runtime::Answer::kUnknown);
+  CHECK(found.lost.answer == runtime::DifferenceAnswer::kUnknown);
+  CHECK(found.gained.answer == runtime::DifferenceAnswer::kUnknown);
   CHECK(!found.lost.count.exact);
   CHECK(!found.first_count);
 }

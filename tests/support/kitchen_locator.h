@@ -13,7 +13,7 @@ namespace parallax::test {
 class KitchenLocator final : public compiler::PoseLocator {
  public:
   std::optional<std::string> region_of(std::string_view function,
-                                       const compiler::Pose& pose) const override {
+                                       const compiler::PlanPose& pose) const override {
     const auto within = [](double value, double low, double high) {
       return value >= low && value <= high;
     };
@@ -32,7 +32,7 @@ class KitchenLocator final : public compiler::PoseLocator {
     }
     return std::nullopt;
   }
-  std::optional<Nearest> nearest(std::string_view, const compiler::Pose&) const override {
+  std::optional<Nearest> nearest(std::string_view, const compiler::PlanPose&) const override {
     return std::nullopt;
   }
 };

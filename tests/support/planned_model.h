@@ -35,10 +35,10 @@ inline const std::string kGoing =
 class TwoRooms final : public compiler::PoseLocator {
  public:
   std::optional<std::string> region_of(std::string_view,
-                                       const compiler::Pose& pose) const override {
+                                       const compiler::PlanPose& pose) const override {
     return pose.x_m < 1.0 ? "a1" : "b2";
   }
-  std::optional<Nearest> nearest(std::string_view, const compiler::Pose&) const override {
+  std::optional<Nearest> nearest(std::string_view, const compiler::PlanPose&) const override {
     return std::nullopt;
   }
 };

@@ -33,7 +33,7 @@ bool same_trace(const harness::CampaignTrace& a, const harness::CampaignTrace& b
 }
 
 /// The traces of the model in the numbering of the run.
-struct ListedTraces {
+struct NumberedTraces {
   std::vector<harness::CampaignTrace> traces;
   bool all = false;
   std::unique_ptr<EnumeratedTraces> feed;
@@ -49,13 +49,13 @@ bool is_recorded_trace(const harness::TraceLine& line, const harness::CampaignTr
 /// Lists at least the traces of the journal. A journal does not tell whether the run split initial
 /// states or took every hit, so the options are tried until the traces fit. None: the model has no
 /// such traces.
-std::optional<ListedTraces> list_traces(const compiler::CompiledModel& model,
-                                        const harness::JournalText& journal, std::int64_t limit,
-                                        Context& context) {
+std::optional<NumberedTraces> list_traces(const compiler::CompiledModel& model,
+                                          const harness::JournalText& journal, std::int64_t limit,
+                                          Context& context) {
   const auto last = journal.traces.empty() ? std::int64_t{0} : journal.traces.rbegin()->first;
   for (const bool split : {false, true}) {
     for (const bool all_hits : {false, true}) {
-      ListedTraces listed;
+      NumberedTraces listed;
       listed.feed = std::make_unique<EnumeratedTraces>(
           model, context,
           runtime::PlanEnumeratorOptions{.all_hits = all_hits, .split_initial = split});
@@ -87,7 +87,7 @@ std::optional<ListedTraces> list_traces(const compiler::CompiledModel& model,
 }
 
 /// The folder of a run, as far as it can be read without its scenario.
-struct RunRecord {
+struct FolderRecord {
   std::string folder;
   harness::JournalText journal;
   bool executed = false;  // the plan itself, in closed loop
@@ -114,7 +114,7 @@ class Collector {
     if (!journal) return sink.already_reported();
     if (!journal->header) return sink.error_about(codes::kNoJournal, folder);
     if (!expect_traces({folder, {}}, *journal->header, sink)) return sink.already_reported();
-    RunRecord run{folder, *std::move(journal), false, {}};
+    FolderRecord run{folder, *std::move(journal), false, {}};
     const auto& header = *run.journal.header;
     run.executed = recorded_execution(header) == harness::Execution::kClosedLoop;
     run.terms.comparison = recorded_comparison(header).value_or(harness::Comparison::kEveryStep);
@@ -144,7 +144,7 @@ class Collector {
  private:
   /// The simulations that count: losses show nothing, repetitions nothing new, and one draw of one
   /// scenario is one simulation, however often it is on record.
-  std::vector<harness::SampleKey> to_count(const RunRecord& run) {
+  std::vector<harness::SampleKey> to_count(const FolderRecord& run) {
     std::vector<harness::SampleKey> out;
     std::int64_t known = 0;
     const auto& header = *run.journal.header;
@@ -177,7 +177,7 @@ class Collector {
     return is_new;
   }
 
-  base::Status add_executed(const RunRecord& run) {
+  base::Status add_executed(const FolderRecord& run) {
     auto& sink = context_.sink();
     const auto& header = *run.journal.header;
     auto& scenario = executed_[header.scenario_hash];
@@ -219,7 +219,7 @@ class Collector {
     return most;
   }
 
-  base::Status add_open(const RunRecord& run) {
+  base::Status add_open(const FolderRecord& run) {
     const auto loaded = load_recorded_scenario({run.folder, options_.scenario}, *run.journal.header,
                                                ScenarioUse::kRun, context_);
     if (!loaded || !check(*loaded, run.journal)) return context_.sink().already_reported();
@@ -263,7 +263,7 @@ class Collector {
     return std::move(found->second);
   }
 
-  base::Status add_traces(const ScenarioModel& loaded, const RunRecord& run) {
+  base::Status add_traces(const ScenarioModel& loaded, const FolderRecord& run) {
     auto& sink = context_.sink();
     const auto& journal = run.journal;
     const auto& compilation = loaded.compilation;
@@ -341,7 +341,7 @@ class Collector {
 
   const CoverageOptions& options_;
   Context& context_;
-  std::vector<RunRecord> runs_;
+  std::vector<FolderRecord> runs_;
   /// Scenario, execution, seed, trace or initial state, and number of every simulation that was
   /// counted.
   std::set<std::tuple<std::string, bool, std::uint64_t, std::string, std::int64_t>> counted_;

@@ -9,21 +9,21 @@ namespace parallax::tools {
 namespace {
 
 /// The height of a place is that of the lowest point of what lies there.
-harness::Point point(const compiler::Pose& pose) {
+harness::Point point(const compiler::PlanPose& pose) {
   return {pose.x_m, pose.y_m, pose.z_m, compiler::yaw_rad(pose), pose.z_m};
 }
 
 }  // namespace
 
 std::optional<std::string> RegionLocator::region_of(std::string_view function,
-                                                    const compiler::Pose& pose) const {
+                                                    const compiler::PlanPose& pose) const {
   const auto* region = regions_->locate(function, point(pose));
   if (region == nullptr) return std::nullopt;
   return region->name;
 }
 
 std::optional<compiler::PoseLocator::Nearest> RegionLocator::nearest(
-    std::string_view function, const compiler::Pose& pose) const {
+    std::string_view function, const compiler::PlanPose& pose) const {
   std::optional<Nearest> best;
   const auto at = point(pose);
   for (const auto& region : regions_->regions()) {

@@ -17,9 +17,9 @@ class RegionLocator final : public compiler::PoseLocator {
   explicit RegionLocator(const harness::RegionMap& regions) : regions_(&regions) {}
 
   std::optional<std::string> region_of(std::string_view function,
-                                       const compiler::Pose& pose) const override;
+                                       const compiler::PlanPose& pose) const override;
   std::optional<Nearest> nearest(std::string_view function,
-                                 const compiler::Pose& pose) const override;
+                                 const compiler::PlanPose& pose) const override;
   std::optional<base::SourceRange> place_of(std::string_view name) const override;
 
  private:

@@ -68,7 +68,7 @@ base::Result<std::vector<base::FileId>> load_scenario_plan(const harness::Scenar
                                                            Context& context) {
   base::PathGate gate(context.form().allow_outside, &context.files());
   gate.admit_beside(scenario.file);
-  std::vector<compiler::PlanPath> paths;
+  std::vector<compiler::PlanEntry> paths;
   for (const auto& plan : scenario.plan) paths.push_back({plan.text, plan.source});
   return compiler::load_plan_files(paths, gate, context.files(), context.sink());
 }
@@ -236,7 +236,7 @@ base::Status add_plan(const ModelOptions& options, std::optional<harness::Scenar
     regions = *std::move(scenario);
   }
   locator.emplace(regions ? regions->mapping->regions() : kNowhere);
-  std::vector<compiler::PlanPath> paths;
+  std::vector<compiler::PlanEntry> paths;
   base::PathGate gate(context.form().allow_outside, &context.files());
   for (const auto& path : options.plan) {
     paths.push_back({path, std::nullopt});

@@ -139,7 +139,7 @@ class TraceFileReplay {
     return true;
   }
 
-  TracesReplay result() && { return std::move(result_); }
+  ReplayedTraces result() && { return std::move(result_); }
 
  private:
   bool has_right_length(const ClaimedTrace& trace) {
@@ -271,15 +271,15 @@ class TraceFileReplay {
   base::DiagnosticSink& sink_;
   runtime::TraceReplay replay_;
   std::unique_ptr<compiler::ReferenceEvaluator> evaluator_;  // made for the first trace
-  TracesReplay result_;
+  ReplayedTraces result_;
 };
 
 }  // namespace
 
-base::Result<TracesReplay> replay_traces(const ModelOptions& model,
-                                         const ReplayTracesOptions& options,
-                                         const std::function<void(const ReplayedTrace&)>& report,
-                                         Context& context) {
+base::Result<ReplayedTraces> replay_traces(const ModelOptions& model,
+                                           const ReplayTracesOptions& options,
+                                           const std::function<void(const ReplayedTrace&)>& report,
+                                           Context& context) {
   auto& sink = context.sink();
   const auto compilation = compile_models(model, context);
   if (!compilation) return sink.already_reported();

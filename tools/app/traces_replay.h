@@ -27,7 +27,7 @@ struct ReplayedTrace {
   std::optional<base::SourceRange> source;
 };
 
-struct TracesReplay {
+struct ReplayedTraces {
   std::vector<ReplayedTrace> traces;  // in order of the file
   std::int64_t seen = 0, failed = 0;
   std::int64_t checked = 0;  // agree, and the reference evaluator says so, too
@@ -40,9 +40,9 @@ struct TracesReplay {
 /// soon as its result is known. Reports those that fail (E7204, E7205) at the first axiom and
 /// timepoint. Every trace that agrees is checked again by the reference evaluator, where the model
 /// can be expanded. Files that cannot be read are reported (E61xx).
-base::Result<TracesReplay> replay_traces(const ModelOptions& model,
-                                         const ReplayTracesOptions& options,
-                                         const std::function<void(const ReplayedTrace&)>& report,
-                                         Context& context);
+base::Result<ReplayedTraces> replay_traces(const ModelOptions& model,
+                                           const ReplayTracesOptions& options,
+                                           const std::function<void(const ReplayedTrace&)>& report,
+                                           Context& context);
 
 }  // namespace parallax::tools

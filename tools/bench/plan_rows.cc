@@ -27,13 +27,13 @@ constexpr int kHorizons[] = {10, 20, 30, 40, 50};
 class KitchenPlaces final : public compiler::PoseLocator {
  public:
   std::optional<std::string> region_of(std::string_view function,
-                                       const compiler::Pose& pose) const override {
+                                       const compiler::PlanPose& pose) const override {
     const bool counter = pose.x_m > 0.3;
     if (function == "region") return counter ? "bWork" : "bTable";
     const int cell = static_cast<int>((pose.y_m - (counter ? 0.0 : 0.40)) / 0.15) + 1;
     return (counter ? "pw" : "pt") + std::to_string(std::clamp(cell, 1, counter ? 3 : 4));
   }
-  std::optional<Nearest> nearest(std::string_view, const compiler::Pose&) const override {
+  std::optional<Nearest> nearest(std::string_view, const compiler::PlanPose&) const override {
     return std::nullopt;
   }
 };

@@ -17,7 +17,7 @@ bool is_scenario(const std::string& path) {
   return path.ends_with(".yaml") || path.ends_with(".yml");
 }
 
-struct CheckOptions {
+struct CheckCommandOptions {
   ModelOptions model;
   std::vector<std::string> allow;
   bool no_lint = false;
@@ -39,7 +39,7 @@ bool mute_allowed(const std::vector<std::string>& allow, Invocation& invocation)
   return true;
 }
 
-int check(const CheckOptions& check_options, Invocation& invocation) {
+int check(const CheckCommandOptions& check_options, Invocation& invocation) {
   const auto& options = check_options.model;
   if (!mute_allowed(check_options.allow, invocation)) return 0;
   std::vector<std::string> models;
@@ -80,7 +80,7 @@ int check(const CheckOptions& check_options, Invocation& invocation) {
 }  // namespace
 
 Command check_command() {
-  auto options = std::make_shared<CheckOptions>();
+  auto options = std::make_shared<CheckCommandOptions>();
   OptionTable command("check", "Parse, check and lint models and scenarios; report every error");
   command.footer(
       "Examples:\n"

@@ -37,14 +37,14 @@ struct DiffOptions {
 std::string quoted(const std::string& text) { return base::json_text(Json(base::printable(text))); }
 
 /// The result of every kind of comparison: a text, or the fields of a document.
-struct Comparison {
+struct ComparedRevisions {
   bool differs = false;
   std::string text;
   std::string kind;    // "model"
   std::string fields;  // `"axioms":{...},...`
 };
 
-int print(const DiffOptions& options, const Comparison& outcome, Invocation& invocation) {
+int print(const DiffOptions& options, const ComparedRevisions& outcome, Invocation& invocation) {
   if (invocation.options().json) {
     invocation.document(
         fmt::format("{{\"status\":\"ok\",\"equal\":{},\"kind\":\"{}\",\"old\":{},\"new\":{},{}}}\n",
@@ -75,10 +75,10 @@ void report_unknown(const ModelDifference& found, Invocation& invocation) {
         fmt::format("for deciding whether {} has a trace that {} has not",
                     base::printable(kept.name), base::printable(other.name)));
   };
-  if (found.traces->lost.answer == runtime::Answer::kUnknown) {
+  if (found.traces->lost.answer == runtime::DifferenceAnswer::kUnknown) {
     report(found.old_side, found.new_side);
   }
-  if (found.traces->gained.answer == runtime::Answer::kUnknown) {
+  if (found.traces->gained.answer == runtime::DifferenceAnswer::kUnknown) {
     report(found.new_side, found.old_side);
   }
 }
@@ -89,12 +89,12 @@ int diff_models(const DiffOptions& options, RevisionKind old_kind, RevisionKind 
                                     options.models, invocation);
   if (!found) return 0;
   const auto report = found->report();
-  Comparison out;
+  ComparedRevisions out;
   out.kind = "model";
   out.differs = !found->facts.empty() || (found->settings && !found->settings->empty());
   if (found->traces) {
-    out.differs = out.differs || found->traces->lost.answer == runtime::Answer::kFound ||
-                  found->traces->gained.answer == runtime::Answer::kFound;
+    out.differs = out.differs || found->traces->lost.answer == runtime::DifferenceAnswer::kFound ||
+                  found->traces->gained.answer == runtime::DifferenceAnswer::kFound;
     report_unknown(*found, invocation);
   }
   if (invocation.options().json) {
@@ -186,7 +186,7 @@ int diff_plans(const DiffOptions& options, RevisionKind kind, Invocation& invoca
   if (!before || !after) return 0;
   compiler::drop_equal_order(before->facts, after->facts);
   const auto report = compare(before->facts, after->facts);
-  Comparison out;
+  ComparedRevisions out;
   out.kind = "plan";
   out.differs = !report.difference.empty();
   show_changes(report, *before, *after);
@@ -212,7 +212,7 @@ int diff_results(const DiffOptions& options, RevisionKind kind, Invocation& invo
   const auto after = result_facts(options.new_path, kind, invocation);
   if (!before || !after) return 0;
   const auto report = compare(*before, *after);
-  Comparison out;
+  ComparedRevisions out;
   out.kind = kind == RevisionKind::kRun ? "run" : "rates";
   out.differs = !report.difference.empty();
   out.fields = facts_fields(report, "settings", "results");
@@ -246,7 +246,7 @@ int diff_trace_files(const DiffOptions& options, Invocation& invocation) {
   const auto after = load_trace_set(options.new_path, invocation);
   if (!before || !after) return 0;
   const auto lost = only_in(*before, *after), gained = only_in(*after, *before);
-  Comparison out;
+  ComparedRevisions out;
   out.kind = "traces";
   out.differs = lost.count + gained.count != 0;
   const Json document = {

@@ -24,7 +24,7 @@ struct ProveOptions {
   std::string scenario, out, check;
   std::int64_t trace = 1, state = 0, action = -1;
   std::vector<std::string> assume;
-  harness::ProofLimits limits;
+  harness::SubdivisionLimits limits;
   std::int64_t simulate = 0;
   std::uint64_t seed = 1;
 };
@@ -70,7 +70,7 @@ bool is_contradicted(const ProveOptions& options,
 
 std::vector<harness::SimulatedTest> simulated_tests(
     const ProveOptions& options, const ScenarioModel& loaded, const ProofTask& task,
-    const std::vector<harness::ProvableAction>& actions, const harness::Certificate& certificate) {
+    const std::vector<harness::ProvableAction>& actions, const harness::GeometryCertificate& certificate) {
   if (options.simulate <= 0) return {};
   return harness::simulate_tests(loaded.scenario.world, task.layout, task.plan->sampler,
                                  options.seed, options.simulate, task.calls, actions,
@@ -182,7 +182,7 @@ int check_proof(const ProveOptions& options, const ScenarioModel& loaded, Invoca
   auto& sink = invocation.sink();
   const auto text = base::read_file(options.check, sink);
   if (!text) return 0;
-  harness::Certificate certificate;
+  harness::GeometryCertificate certificate;
   const auto misfit = [&](const std::string& why) {
     sink.error_about(codes::kForeignCertificate, options.check, why);
     return 0;

@@ -99,7 +99,7 @@ PrettyJson states_json(const harness::StartResult& about, std::size_t proved) {
 }
 
 /// "from TrolleyAt(onWay) (initial state 2 of 6)"; empty where there is one.
-std::string from_text(const harness::Certificate& certificate, const harness::StartResult& about) {
+std::string from_text(const harness::GeometryCertificate& certificate, const harness::StartResult& about) {
   if (certificate.initial_state == 0) return {};
   return fmt::format("from {} (initial state {} of {})", certificate.holds,
                      certificate.initial_state, harness::states_text(about));
@@ -178,7 +178,7 @@ std::string proof_text(const Proved& proved) {
   return text;
 }
 
-std::string check_json(const harness::Certificate& certificate, const harness::StartResult& about,
+std::string check_json(const harness::GeometryCertificate& certificate, const harness::StartResult& about,
                        const harness::CertificateCheck& result,
                        const std::vector<harness::SimulatedTest>& simulated) {
   nlohmann::ordered_json document = {{"status", status_of(result)},
@@ -209,7 +209,7 @@ std::string check_json(const harness::Certificate& certificate, const harness::S
   return base::json_text(document) + "\n";
 }
 
-std::string check_text(const harness::Certificate& certificate, const harness::StartResult& about,
+std::string check_text(const harness::GeometryCertificate& certificate, const harness::StartResult& about,
                        const harness::CertificateCheck& result,
                        const std::vector<harness::SimulatedTest>& simulated) {
   std::string text = fmt::format("{} boxes confirmed, {} not confirmed, {} wrong\n",

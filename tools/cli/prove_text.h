@@ -14,7 +14,7 @@ namespace parallax::tools {
 
 /// The proof of a trace from one of its initial states.
 struct ProvedState {
-  harness::Certificate certificate;
+  harness::GeometryCertificate certificate;
   std::vector<harness::SimulatedTest> simulated;
 };
 
@@ -35,10 +35,10 @@ std::string proof_json(const Proved& proved);
 std::string proof_text(const Proved& proved);
 
 /// The result of a check: confirmed tests and their assumptions.
-std::string check_json(const harness::Certificate& certificate, const harness::StartResult& about,
+std::string check_json(const harness::GeometryCertificate& certificate, const harness::StartResult& about,
                        const harness::CertificateCheck& result,
                        const std::vector<harness::SimulatedTest>& simulated);
-std::string check_text(const harness::Certificate& certificate, const harness::StartResult& about,
+std::string check_text(const harness::GeometryCertificate& certificate, const harness::StartResult& about,
                        const harness::CertificateCheck& result,
                        const std::vector<harness::SimulatedTest>& simulated);
 

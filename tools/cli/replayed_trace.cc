@@ -39,7 +39,7 @@ nlohmann::ordered_json replayed_json(const ReplayedTrace& trace, const base::Sou
 
 }  // namespace
 
-std::string replay_document(const TracesReplay& replay, const base::SourceFiles& files) {
+std::string replay_document(const ReplayedTraces& replay, const base::SourceFiles& files) {
   auto list = nlohmann::ordered_json::array();
   for (const auto& trace : replay.traces) list.push_back(replayed_json(trace, files));
   const nlohmann::ordered_json document = {{"status", replay.sound ? "ok" : "error"},

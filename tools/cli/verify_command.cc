@@ -39,7 +39,7 @@ struct VerifyOptions {
 };
 
 /// The answer, before it is printed.
-struct Answer {
+struct CheckedProperty {
   std::optional<runtime::Trace> violation;
   /// Atoms that the violation leaves open; none: not asked for, or too hard to tell. Then nothing
   /// is claimed of any that might be open.
@@ -59,12 +59,13 @@ struct Answer {
 /// Limit on conflicts for a proof of the contradiction where symmetry or cubes may do without one.
 constexpr std::int64_t kProvable = 20'000;
 
-Answer ask(const compiler::CompiledModel& model, std::unique_ptr<runtime::SatSolver> solver,
-           runtime::Loading loading, const runtime::ModelSymmetry* symmetry) {
+CheckedProperty ask(const compiler::CompiledModel& model,
+                    std::unique_ptr<runtime::SatSolver> solver, runtime::Loading loading,
+                    const runtime::ModelSymmetry* symmetry) {
   runtime::SolverSession session(model, std::move(solver), loading);
   runtime::PlanEnumerator enumerator(session,
                                      {.order = runtime::TraceOrder::kAny, .symmetry = symmetry});
-  Answer answer;
+  CheckedProperty answer;
   answer.violation = enumerator.next();
   answer.exploration = enumerator.exploration();
   answer.bounds = open_end_texts(model, enumerator.open_ends());
@@ -75,8 +76,8 @@ Answer ask(const compiler::CompiledModel& model, std::unique_ptr<runtime::SatSol
 
 /// Makes a proof where one is asked for or comes at little cost. Where it takes long, does without
 /// it if constants are interchangeable or there are jobs for cubes.
-Answer ask(const compiler::CompiledModel& model, TraceCertifier& certifier, bool insists,
-           std::int64_t jobs) {
+CheckedProperty ask(const compiler::CompiledModel& model, TraceCertifier& certifier, bool insists,
+                    std::int64_t jobs) {
   std::optional<runtime::ModelSymmetry> symmetry;
   if (!insists) symmetry.emplace(model, runtime::SymmetryEffort::kQuick);
   if (!symmetry || (symmetry->empty() && jobs == 0)) {
@@ -104,14 +105,14 @@ CertifyOption proof_option(const VerifyOptions& options, const base::TemporaryFo
 }
 
 /// Has the proof that there is no violation made and checked.
-void prove(const CertifyOption& certify, TraceCertifier& certifier, Answer& answer) {
+void prove(const CertifyOption& certify, TraceCertifier& certifier, CheckedProperty& answer) {
   certifier.conclude(std::string(runtime::to_string(answer.exploration)), true);
   answer.proof = certifier.verdict();
   answer.proof_origin = certifier.origin();
   if (certify.keep && answer.proof == "proof checked") answer.proof_file = certifier.proof_file();
 }
 
-std::string verdict(const Answer& answer) {
+std::string verdict(const CheckedProperty& answer) {
   if (answer.violation) return "violated";
   return answer.exploration == runtime::Exploration::kStopped ? "inconclusive" : "holds";
 }
@@ -155,7 +156,7 @@ std::string trace_text(const compiler::CompiledModel& model, const runtime::Trac
   return out;
 }
 
-std::string answer_text(const compiler::CompiledModel& model, const Answer& answer) {
+std::string answer_text(const compiler::CompiledModel& model, const CheckedProperty& answer) {
   if (answer.violation) {
     auto out = fmt::format("violated at timepoint {}\n", answer.violation->length());
     if (answer.broken) {
@@ -176,7 +177,7 @@ std::string answer_text(const compiler::CompiledModel& model, const Answer& answ
 }
 
 /// The known discrepancies that the answer rests on.
-std::string rests_on_text(const Answer& answer) {
+std::string rests_on_text(const CheckedProperty& answer) {
   if (!answer.rests_on || verdict(answer) == "inconclusive") return {};
   if (answer.rests_on->empty()) {
     return answer.violation ? "the trace goes through no discrepancy that is open or accepted\n"
@@ -191,7 +192,8 @@ std::string rests_on_text(const Answer& answer) {
   return out;
 }
 
-std::string answer_json(const compiler::CompiledModel& model, const Answer& answer, double wall_s) {
+std::string answer_json(const compiler::CompiledModel& model, const CheckedProperty& answer,
+                        double wall_s) {
   nlohmann::ordered_json out;
   out["status"] = "ok";
   out["verdict"] = verdict(answer);

@@ -10,7 +10,7 @@ namespace parallax::tools {
 namespace {
 
 using compiler::FactKind;
-using runtime::Answer;
+using runtime::DifferenceAnswer;
 
 constexpr std::size_t kMaxShownNames = 5;
 
@@ -37,12 +37,12 @@ RuleResult trace_rule(const ModelDifference& found, bool lost) {
   const auto& kept = lost ? found.old_side : found.new_side;
   const auto horizon = lost ? found.old_horizon : found.new_horizon;
   const auto& unmatched = lost ? traces.vocabulary.only_first : traces.vocabulary.only_second;
-  if (side.answer == Answer::kFound) {
+  if (side.answer == DifferenceAnswer::kFound) {
     out.outcome = RuleOutcome::kBroken;
     out.words =
         fmt::format("{} {} up to timepoint {}", count_text(side.count), name, traces.horizon);
     if (side.witness) out.witness = witness_text(found, lost);
-  } else if (side.answer == Answer::kUnknown) {
+  } else if (side.answer == DifferenceAnswer::kUnknown) {
     out.words = "a limit was reached before it was known";
   } else if (!unmatched.empty()) {
     out.words = fmt::format("none {} in what both have, but only {} has {}", name, kept.name,
@@ -66,16 +66,16 @@ RuleResult fact_rule(const FactReport& report, FactKind kind, const char* name) 
 }
 
 /// Does a revision have the property, and if not, how is it violated?
-struct PropertyAnswer {
+struct RevisionAnswer {
   base::Known holds = base::Known::kUndecided;
   std::string why;      // where it is not known
   std::string witness;  // a violation
 };
 
-base::Result<PropertyAnswer> ask_property(const std::string& path, RevisionKind kind,
+base::Result<RevisionAnswer> ask_property(const std::string& path, RevisionKind kind,
                                           const ModelOptions& with, const std::string& property,
                                           Context& context) {
-  PropertyAnswer out;
+  RevisionAnswer out;
   if (kind == RevisionKind::kArtifact) {
     out.why = fmt::format("{} is compiled, and properties are asked of texts", path);
     return out;

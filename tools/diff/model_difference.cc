@@ -70,7 +70,7 @@ base::Known admits(const CompiledModel& model, const runtime::Trace& trace,
 
 /// The refusing revision with some edits undone, as a text.
 std::string variant(const std::vector<Fact>& kept, const std::vector<Fact>& refused,
-                    const std::vector<Edit>& undone) {
+                    const std::vector<RevisionEdit>& undone) {
   std::set<std::pair<compiler::FactKind, std::string>> without;
   std::vector<Fact> facts;
   for (const auto& edit : undone) {
@@ -104,10 +104,10 @@ std::vector<std::size_t> edited_facts(const compiler::FactDifference& facts, boo
 }
 
 /// `kept`: the side that has the trace.
-std::vector<Edit> edits_of(const compiler::FactDifference& facts, bool old_is_kept) {
-  std::vector<Edit> out;
+std::vector<RevisionEdit> edits_of(const compiler::FactDifference& facts, bool old_is_kept) {
+  std::vector<RevisionEdit> out;
   const auto add = [&](std::optional<std::size_t> i, std::optional<std::size_t> j) {
-    out.push_back(old_is_kept ? Edit{i, j} : Edit{j, i});
+    out.push_back(old_is_kept ? RevisionEdit{i, j} : RevisionEdit{j, i});
   };
   for (const auto i : facts.removed) add(i, std::nullopt);
   for (const auto j : facts.added) add(std::nullopt, j);
@@ -212,7 +212,7 @@ class ModelComparison {
     out_.gained_edits = attribute(out_.traces->gained, false);
   }
 
-  std::optional<std::vector<Edit>> attribute(const runtime::OneSided& side, bool lost) {
+  std::optional<std::vector<RevisionEdit>> attribute(const runtime::OneSided& side, bool lost) {
     const bool texts = out_.old_side.is_text && out_.new_side.is_text;
     if (!side.witness || !texts || !options_.facts) return std::nullopt;
     const auto& kept = lost ? out_.old_side : out_.new_side;
@@ -230,12 +230,13 @@ class ModelComparison {
 constexpr std::size_t kMaxEditsForSubsets = 6;
 
 /// The first of the smallest proper parts that are not empty and suffice.
-std::optional<std::vector<Edit>> smallest_part(
-    const std::vector<Edit>& edits, const std::function<bool(const std::vector<Edit>&)>& suffices) {
+std::optional<std::vector<RevisionEdit>> smallest_part(
+    const std::vector<RevisionEdit>& edits,
+    const std::function<bool(const std::vector<RevisionEdit>&)>& suffices) {
   for (std::size_t size = 1; size + 1 < edits.size(); ++size) {  // one less was tried before
     for (std::uint32_t mask = 0; mask < (1U << edits.size()); ++mask) {
       if (static_cast<std::size_t>(std::popcount(mask)) != size) continue;
-      std::vector<Edit> part;
+      std::vector<RevisionEdit> part;
       for (std::size_t i = 0; i < edits.size(); ++i) {
         if ((mask >> i & 1U) != 0) part.push_back(edits[i]);
       }
@@ -247,15 +248,13 @@ std::optional<std::vector<Edit>> smallest_part(
 
 }  // namespace
 
-std::optional<std::vector<Edit>> responsible_edits(const std::vector<Fact>& kept,
-                                                   const std::vector<Fact>& refused,
-                                                   const std::vector<Edit>& edits,
-                                                   const runtime::Trace& trace,
-                                                   const runtime::SharedVocabulary& vocabulary,
-                                                   const ModelOptions& options, Context& context) {
+std::optional<std::vector<RevisionEdit>> responsible_edits(
+    const std::vector<Fact>& kept, const std::vector<Fact>& refused,
+    const std::vector<RevisionEdit>& edits, const runtime::Trace& trace,
+    const runtime::SharedVocabulary& vocabulary, const ModelOptions& options, Context& context) {
   if (edits.size() > kMaxTriedEdits) return std::nullopt;
   bool stopped = false;
-  const auto suffices = [&](const std::vector<Edit>& undone) {
+  const auto suffices = [&](const std::vector<RevisionEdit>& undone) {
     const auto model =
         compile_text(variant(kept, refused, undone), trace.length(), options, context);
     const auto admitted = model ? admits(*model, trace, vocabulary, context) : base::Known::kNo;

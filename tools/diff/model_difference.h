@@ -13,7 +13,7 @@
 namespace parallax::tools {
 
 /// A fact of one revision that the other lacks, or one that replaces another.
-struct Edit {
+struct RevisionEdit {
   std::optional<std::size_t> kept;     // of the revision that has the trace
   std::optional<std::size_t> refused;  // of the revision that has it not
 };
@@ -26,12 +26,10 @@ inline constexpr std::size_t kMaxTriedEdits = 24;
 /// Found by undoing all and restoring them one by one, as long as any can be restored; the subsets
 /// of a small set are all tried. A variant that is not a valid model counts as one without the
 /// trace. None if there are more than kMaxTriedEdits.
-std::optional<std::vector<Edit>> responsible_edits(const std::vector<compiler::Fact>& kept,
-                                                   const std::vector<compiler::Fact>& refused,
-                                                   const std::vector<Edit>& edits,
-                                                   const runtime::Trace& trace,
-                                                   const runtime::SharedVocabulary& vocabulary,
-                                                   const ModelOptions& options, Context& context);
+std::optional<std::vector<RevisionEdit>> responsible_edits(
+    const std::vector<compiler::Fact>& kept, const std::vector<compiler::Fact>& refused,
+    const std::vector<RevisionEdit>& edits, const runtime::Trace& trace,
+    const runtime::SharedVocabulary& vocabulary, const ModelOptions& options, Context& context);
 
 /// Two lists of facts and their differences; the lists outlive it.
 struct FactReport {
@@ -71,7 +69,7 @@ struct ModelDifference {
   std::optional<std::vector<SettingChange>> settings;
   std::optional<runtime::TraceDifference> traces;
   /// The edits that the witnesses depend on; none where it was not tried.
-  std::optional<std::vector<Edit>> lost_edits, gained_edits;
+  std::optional<std::vector<RevisionEdit>> lost_edits, gained_edits;
   std::vector<std::string> remarks;  // what was not compared, and why
 
   FactReport report() const { return {old_side.facts, new_side.facts, facts}; }

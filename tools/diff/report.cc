@@ -77,7 +77,7 @@ std::string to_json(const FactReport& report, FactKind kind) {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
-using runtime::Answer;
+using runtime::DifferenceAnswer;
 
 constexpr std::size_t kMaxNames = 10;  // that are listed in one line
 
@@ -108,11 +108,11 @@ struct SideView {
   const ModelRevision& kept;
   const ModelRevision& refused;
   const runtime::OneSided& traces;
-  const std::optional<std::vector<Edit>>& edits;
+  const std::optional<std::vector<RevisionEdit>>& edits;
   std::set<std::string> edited_places;  // of the refusing side
 };
 
-std::string edit_text(const SideView& side, const Edit& edit, bool lost) {
+std::string edit_text(const SideView& side, const RevisionEdit& edit, bool lost) {
   // Undoing an edit of the new revision brings the old text back, and the other way round.
   const auto* kept = edit.kept ? &side.kept.facts[*edit.kept] : nullptr;
   const auto* refused = edit.refused ? &side.refused.facts[*edit.refused] : nullptr;
@@ -159,11 +159,11 @@ std::string witness_text(const SideView& side, bool lost) {
 
 std::string side_text(const SideView& side, bool lost, bool stat) {
   switch (side.traces.answer) {
-    case Answer::kNone:
+    case DifferenceAnswer::kNone:
       return fmt::format("  {}: none\n", base::printable(side.name));
-    case Answer::kUnknown:
+    case DifferenceAnswer::kUnknown:
       return fmt::format("  {}: unknown\n", base::printable(side.name));
-    case Answer::kFound:
+    case DifferenceAnswer::kFound:
       break;
   }
   auto out = fmt::format("  {}: {}\n", base::printable(side.name), number_of(side.traces.count));
@@ -237,8 +237,8 @@ OrderedJson witness_json(const SideView& side, bool lost) {
 OrderedJson side_json(const SideView& side, bool lost) {
   static constexpr const char* kAnswers[] = {"found", "none", "unknown"};
   OrderedJson out = {{"answer", kAnswers[static_cast<std::size_t>(side.traces.answer)]}};
-  out["count"] =
-      side.traces.answer == Answer::kUnknown ? OrderedJson(nullptr) : json_of(side.traces.count);
+  out["count"] = side.traces.answer == DifferenceAnswer::kUnknown ? OrderedJson(nullptr)
+                                                                  : json_of(side.traces.count);
   out["witness"] = side.traces.witness ? witness_json(side, lost) : OrderedJson(nullptr);
   out["solver_calls"] = side.traces.solve_calls;
   out["refinements"] = side.traces.refinements;

@@ -56,9 +56,10 @@ class Side {
   const std::vector<Setting>& all_;
 };
 
-class Comparison {
+class SettingsComparison {
  public:
-  Comparison(const harness::ScenarioSettings& before, const harness::ScenarioSettings& after)
+  SettingsComparison(const harness::ScenarioSettings& before,
+                     const harness::ScenarioSettings& after)
       : old_(before), new_(after) {}
 
   std::vector<SettingChange> run() && {
@@ -168,7 +169,7 @@ OrderedJson place_json(const std::string& file, std::uint32_t line) {
 
 std::vector<SettingChange> compare_settings(const harness::ScenarioSettings& before,
                                             const harness::ScenarioSettings& after) {
-  return Comparison(before, after).run();
+  return SettingsComparison(before, after).run();
 }
 
 std::string change_text(const SettingChange& change) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/base/known.h"
 #include "compiler/sema/typed_model.h"
 #include "runtime/session/solver_session.h"
 #include "tools/app/context.h"
@@ -17,7 +18,7 @@
 
 namespace parallax::tools {
 
-enum class Truth : std::uint8_t { kFalse, kTrue, kUnknown };
+using base::Truth;
 
 /// The vocabulary of rules: fluents, predicates without time and events of a model, with the
 /// constants of their sorts, all by number.

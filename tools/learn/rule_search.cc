@@ -31,7 +31,7 @@ constexpr std::size_t kMostSearchSteps = 200'000;  // of one search
 constexpr int kNone = std::numeric_limits<int>::max();
 
 /// Examples in the words of a head.
-struct Instances {
+struct CoveredExamples {
   std::vector<std::size_t> examples;  // places among `shown` or `against`
   std::vector<RuleInstance> values;
 };
@@ -129,9 +129,9 @@ class RuleFinder {
                Truth::kTrue;
   }
 
-  Instances instances(const LearnedRule& head, const std::vector<RuleExample>& examples,
-                      const ExampleSet* only) const {
-    Instances out;
+  CoveredExamples instances(const LearnedRule& head, const std::vector<RuleExample>& examples,
+                            const ExampleSet* only) const {
+    CoveredExamples out;
     RuleInstance instance;
     for (std::size_t i = 0; i < examples.size(); ++i) {
       if (only != nullptr && !only->contains(i)) continue;

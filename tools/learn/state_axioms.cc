@@ -140,7 +140,7 @@ bool StateAxioms::possible(const Evidence::State& seen, const std::vector<bool>&
 
 /// Drops the formula without which most states become possible; among equals a definition of an
 /// observed fluent, then the first. True: one was dropped.
-bool StateAxioms::refute_one(const std::vector<SeenState>& states) {
+bool StateAxioms::refute_one(const std::vector<ReachedState>& states) {
   const auto now = kept();
   std::vector<std::size_t> votes(parts_.size(), 0);
   std::vector<bool> defines_seen(parts_.size(), false);
@@ -185,7 +185,7 @@ bool StateAxioms::refute_one(const std::vector<SeenState>& states) {
   return !together.empty();
 }
 
-void StateAxioms::refute(const std::vector<SeenState>& states, const std::atomic<bool>& stop) {
+void StateAxioms::refute(const std::vector<ReachedState>& states, const std::atomic<bool>& stop) {
   const auto before = text(true);
   while (refute_one(states)) {
   }
@@ -206,7 +206,7 @@ void StateAxioms::refute(const std::vector<SeenState>& states, const std::atomic
   if (text(true) != before) ++version_;
 }
 
-void StateAxioms::learn_exceptions(const std::vector<SeenState>& states,
+void StateAxioms::learn_exceptions(const std::vector<ReachedState>& states,
                                    const std::atomic<bool>& stop) {
   std::vector<Part*> wrong;
   for (auto& part : parts_) {
@@ -235,7 +235,7 @@ void StateAxioms::learn_exceptions(const std::vector<SeenState>& states,
 
 /// Exceptions that are certain by themselves may, together with other formulas, exclude a state
 /// that runs came to. Then none counts as certain.
-void StateAxioms::doubt_exceptions(const std::vector<SeenState>& states,
+void StateAxioms::doubt_exceptions(const std::vector<ReachedState>& states,
                                    const std::vector<std::vector<Truth>>& truths,
                                    const std::atomic<bool>& stop) {
   std::string why;
@@ -253,7 +253,7 @@ void StateAxioms::doubt_exceptions(const std::vector<SeenState>& states,
   }
 }
 
-void StateAxioms::learn_exceptions(Part& part, const std::vector<SeenState>& states,
+void StateAxioms::learn_exceptions(Part& part, const std::vector<ReachedState>& states,
                                    const std::vector<std::vector<Truth>>& truths,
                                    const std::atomic<bool>& stop) {
   const auto symbol = symbol_of(part);

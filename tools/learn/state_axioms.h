@@ -14,7 +14,7 @@
 namespace parallax::tools {
 
 /// An observed state, with the runs that came to it.
-struct SeenState {
+struct ReachedState {
   Evidence::State seen;
   std::vector<std::string> runs;
   bool start = false;  // of a run
@@ -43,7 +43,7 @@ class StateAxioms {
                                            const Context& context, std::string& why);
 
   /// Drops or weakens the formulas that these states, all observed so far, contradict.
-  void refute(const std::vector<SeenState>& states, const std::atomic<bool>& stop);
+  void refute(const std::vector<ReachedState>& states, const std::atomic<bool>& stop);
   /// The declarations with what is left of the formulas: `everywhere` without those that hold at
   /// the start alone.
   std::string text(bool everywhere) const;
@@ -80,12 +80,12 @@ class StateAxioms {
                 std::optional<std::size_t> without_fluent = std::nullopt,
                 std::optional<compiler::Literal> also = std::nullopt);
   std::vector<bool> kept() const;
-  bool refute_one(const std::vector<SeenState>& states);
-  void learn_exceptions(const std::vector<SeenState>& states, const std::atomic<bool>& stop);
-  void learn_exceptions(Part& part, const std::vector<SeenState>& states,
+  bool refute_one(const std::vector<ReachedState>& states);
+  void learn_exceptions(const std::vector<ReachedState>& states, const std::atomic<bool>& stop);
+  void learn_exceptions(Part& part, const std::vector<ReachedState>& states,
                         const std::vector<std::vector<Truth>>& truths,
                         const std::atomic<bool>& stop);
-  void doubt_exceptions(const std::vector<SeenState>& states,
+  void doubt_exceptions(const std::vector<ReachedState>& states,
                         const std::vector<std::vector<Truth>>& truths,
                         const std::atomic<bool>& stop);
 

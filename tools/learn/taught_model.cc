@@ -74,7 +74,7 @@ void TaughtModel::add(Evidence run, std::int64_t round) {
 /// Decides which formulas about states hold, and up to where each run agrees with them.
 void TaughtModel::settle_states(bool learns) {
   std::map<Evidence::State, std::size_t> places;
-  std::vector<SeenState> states;
+  std::vector<ReachedState> states;
   for (const auto& run : seen_) {
     for (const auto& state : run.states) {
       const auto [place, is_new] = places.emplace(state, states.size());

@@ -34,7 +34,7 @@ std::optional<MutantOutcome> mutant_outcome_of(const std::string& text) {
 }
 
 /// Decodes a line; none if it is half written or not a judgement.
-std::optional<std::pair<std::string, Judgement>> read_line(const std::string& line) {
+std::optional<std::pair<std::string, MutantJudgement>> read_line(const std::string& line) {
   const auto json = base::parse_ordered_json(line);
   if (!json.is_object()) return std::nullopt;
   const auto text = [&](const char* name) {
@@ -43,7 +43,7 @@ std::optional<std::pair<std::string, Judgement>> read_line(const std::string& li
   };
   const auto outcome = mutant_outcome_of(text("outcome"));
   if (!outcome || text("mutant").empty()) return std::nullopt;
-  Judgement out{*outcome, text("by"), text("why"), text("told_in")};
+  MutantJudgement out{*outcome, text("by"), text("why"), text("told_in")};
   const auto gained = json.find("gained");
   out.gained = gained != json.end() && gained->is_boolean() && gained->get<bool>();
   const auto by = json.find("excluded_by");
@@ -53,7 +53,7 @@ std::optional<std::pair<std::string, Judgement>> read_line(const std::string& li
   return std::pair(text("mutant"), std::move(out));
 }
 
-std::string line_of(const Mutant& mutant, const Judgement& judgement) {
+std::string line_of(const Mutant& mutant, const MutantJudgement& judgement) {
   return base::json_text(OrderedJson{{"mutant", key_of(mutant)},
                                      {"outcome", to_string(judgement.outcome)},
                                      {"by", judgement.by},
@@ -109,13 +109,13 @@ base::Result<JudgedMutants> JudgedMutants::open(const fs::path& file, const std:
   return out;
 }
 
-std::optional<Judgement> JudgedMutants::find(const Mutant& mutant) const {
+std::optional<MutantJudgement> JudgedMutants::find(const Mutant& mutant) const {
   const auto at = known_.find(key_of(mutant));
   if (at == known_.end()) return std::nullopt;
   return at->second;
 }
 
-void JudgedMutants::add(const Mutant& mutant, const Judgement& judgement) {
+void JudgedMutants::add(const Mutant& mutant, const MutantJudgement& judgement) {
   const std::lock_guard lock(*mutex_);
   if (error_ == 0 && !base::write_all(out_.get(), line_of(mutant, judgement))) error_ = errno;
 }

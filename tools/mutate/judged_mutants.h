@@ -26,13 +26,13 @@ class JudgedMutants {
                                           const std::string& suite, bool resume,
                                           base::DiagnosticSink& sink);
 
-  std::optional<Judgement> find(const Mutant& mutant) const;
-  void add(const Mutant& mutant, const Judgement& judgement);
+  std::optional<MutantJudgement> find(const Mutant& mutant) const;
+  void add(const Mutant& mutant, const MutantJudgement& judgement);
   /// The `errno` of the first line that could not be written; 0: all were.
   int write_error() const;
 
  private:
-  std::map<std::string, Judgement> known_;  // by key
+  std::map<std::string, MutantJudgement> known_;  // by key
   std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();
   base::Descriptor out_;
   int error_ = 0;

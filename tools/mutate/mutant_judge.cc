@@ -83,7 +83,7 @@ MutantJudge::Told MutantJudge::compare_models(const CaseModel& original, const C
   options.stop = &flag;
   const auto found = runtime::compare_traces(original.compiled, mutated.compiled, options);
   for (const auto* side : {&found.lost, &found.gained}) {
-    if (side->answer != runtime::Answer::kFound) continue;
+    if (side->answer != runtime::DifferenceAnswer::kFound) continue;
     out.answer = Told::Answer::kDiffers;
     out.judgement.gained = side == &found.gained;
     out.judgement.excluded_by = side->witness->excluded_by;
@@ -91,8 +91,8 @@ MutantJudge::Told MutantJudge::compare_models(const CaseModel& original, const C
     out.judgement.trace_json = observable_jsonl(side->witness->trace);
     return out;
   }
-  const bool decided =
-      found.lost.answer == runtime::Answer::kNone && found.gained.answer == runtime::Answer::kNone;
+  const bool decided = found.lost.answer == runtime::DifferenceAnswer::kNone &&
+                       found.gained.answer == runtime::DifferenceAnswer::kNone;
   if (decided && found.vocabulary.is_same() &&
       original.compiled.horizon == mutated.compiled.horizon) {
     out.answer = Told::Answer::kSame;
@@ -152,7 +152,7 @@ CaseResult MutantJudge::run(std::size_t index) {
   return run_case(own_cases_[index], options, stop_);
 }
 
-Judgement MutantJudge::look_at(const Mutant& mutant) {
+MutantJudgement MutantJudge::look_at(const Mutant& mutant) {
   const auto noticed = [&](std::size_t i, const CaseResult& result) {
     auto why = result.problems.empty() ? std::string() : result.problems.front();
     why = why.substr(0, why.find('\n'));
@@ -161,9 +161,9 @@ Judgement MutantJudge::look_at(const Mutant& mutant) {
          at = why.find(copy_.folder().string())) {
       why.erase(at, copy_.folder().string().size() + 1);
     }
-    return Judgement{MutantOutcome::kNoticed, suite_.cases[i].name(), std::move(why)};
+    return MutantJudgement{MutantOutcome::kNoticed, suite_.cases[i].name(), std::move(why)};
   };
-  std::optional<Judgement> told;
+  std::optional<MutantJudgement> told;
   std::vector<std::size_t> to_run;
   std::string unknown, undecided;
   for (const auto i : mutant.cases) {
@@ -212,7 +212,7 @@ Judgement MutantJudge::look_at(const Mutant& mutant) {
   return {MutantOutcome::kEquivalent};
 }
 
-base::Result<Judgement> MutantJudge::judge(const Mutant& mutant, base::DiagnosticSink& sink) {
+base::Result<MutantJudgement> MutantJudge::judge(const Mutant& mutant, base::DiagnosticSink& sink) {
   if (!copy_.write(mutant.file, mutant.text, sink)) return sink.already_reported();
   compared_.clear();
   auto out = look_at(mutant);

@@ -27,7 +27,7 @@ enum class MutantOutcome : std::uint8_t {
 };
 std::string_view to_string(MutantOutcome outcome);
 
-struct Judgement {
+struct MutantJudgement {
   MutantOutcome outcome = MutantOutcome::kOpen;
   std::string by = {};   // the first case that notices it
   std::string why = {};  // what that case says, what does not compile, what is not known
@@ -58,7 +58,7 @@ class MutantJudge {
               CpuWatch& watch, std::size_t thread, const std::atomic<bool>& stop);
 
   /// kOpen if `stop` was raised meanwhile. Reports what cannot be written.
-  base::Result<Judgement> judge(const Mutant& mutant, base::DiagnosticSink& sink);
+  base::Result<MutantJudgement> judge(const Mutant& mutant, base::DiagnosticSink& sink);
 
   /// A case in the copy, as it is now.
   CaseResult run(std::size_t index);
@@ -70,13 +70,13 @@ class MutantJudge {
     enum class Answer : std::uint8_t { kSame, kDiffers, kUnknown, kInvalid };
     Answer answer = Answer::kUnknown;
     std::string why = {};
-    Judgement judgement = {};  // kDiffers
+    MutantJudgement judgement = {};  // kDiffers
   };
   Told compare(std::size_t index);
   /// The answer is kUnknown if `flag` ends it early.
   Told compare_models(const CaseModel& original, const CaseModel& mutated,
                       const std::atomic<bool>& flag);
-  Judgement look_at(const Mutant& mutant);
+  MutantJudgement look_at(const Mutant& mutant);
 
   const JudgedSuite& suite_;
   const ScratchCopy& copy_;

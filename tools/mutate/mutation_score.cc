@@ -216,7 +216,7 @@ class SuiteMutation {
     context_.remark(text);
   }
 
-  void progress(const Judgement& judgement, const Mutant& mutant) {
+  void progress(const MutantJudgement& judgement, const Mutant& mutant) {
     const std::lock_guard lock(mutex_);
     ++done_;
     if (judgement.outcome == MutantOutcome::kUnnoticed) {
@@ -247,9 +247,9 @@ class SuiteMutation {
 }  // namespace
 
 std::size_t MutationScore::count(MutantOutcome outcome) const {
-  return static_cast<std::size_t>(
-      std::count_if(judgements.begin(), judgements.end(),
-                    [&](const Judgement& judgement) { return judgement.outcome == outcome; }));
+  return static_cast<std::size_t>(std::count_if(
+      judgements.begin(), judgements.end(),
+      [&](const MutantJudgement& judgement) { return judgement.outcome == outcome; }));
 }
 
 base::Result<MutationScore> score_suite(const std::vector<SuiteCase>& cases,

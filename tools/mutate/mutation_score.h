@@ -26,10 +26,10 @@ struct MutationOptions {
 struct MutationScore {
   std::vector<std::string> red;  // lines about cases that do not pass; then nothing was mutated
   std::size_t cases = 0;
-  std::size_t made = 0;                  // mutants, of which `mutants` are looked at
-  std::vector<Mutant> mutants;           // by file and line
-  std::vector<Judgement> judgements;     // parallel
-  std::vector<std::string> passed_over;  // files that are not read from copies, in words
+  std::size_t made = 0;                     // mutants, of which `mutants` are looked at
+  std::vector<Mutant> mutants;              // by file and line
+  std::vector<MutantJudgement> judgements;  // parallel
+  std::vector<std::string> passed_over;     // files that are not read from copies, in words
 
   std::size_t count(MutantOutcome outcome) const;
   std::size_t observable() const {

@@ -51,7 +51,7 @@ Numbers all_of(const MutationScore& score) {
   return out;
 }
 
-std::string witness(const Judgement& judgement) {
+std::string witness(const MutantJudgement& judgement) {
   const auto* whose = judgement.gained ? "of the mutant, which the original has not"
                                        : "of the original, which the mutant has not";
   return fmt::format("  {} has a trace {} (ruled out by timepoint {}):\n{}",
@@ -75,7 +75,7 @@ std::string readers(const MutationScore& score) {
   return out;
 }
 
-OrderedJson json_of(const Mutant& mutant, const Judgement& judgement) {
+OrderedJson json_of(const Mutant& mutant, const MutantJudgement& judgement) {
   OrderedJson out = {{"file", mutant.file},
                      {"line", mutant.line},
                      {"kind", mutant.kind},

@@ -42,15 +42,15 @@ Curve curve_of(const PageData& page, const PageTrace& trace) {
       curve.aside += sample.origin == SampleOrigin::kFurther ? 0 : 1;
       continue;
     }
-    if (sample.verdict == SampleVerdict::kNotJudged) {
+    if (sample.verdict == PageVerdict::kNotJudged) {
       ++curve.open;
       continue;
     }
-    if (sample.unfinished && sample.verdict == SampleVerdict::kClean) {
+    if (sample.unfinished && sample.verdict == PageVerdict::kClean) {
       ++curve.unfinished;
       continue;
     }
-    failed.push_back(sample.verdict != SampleVerdict::kClean);
+    failed.push_back(sample.verdict != PageVerdict::kClean);
   }
   curve.runs = static_cast<std::int64_t>(failed.size());
   const double confidence = asked_of(page, trace).trace_level();

@@ -78,9 +78,8 @@ void add_rule(PageData& page) {
   std::size_t failed = 0, clean = 0;
   for (const auto& sample : page.samples) {
     const bool fails =
-        sample.verdict == SampleVerdict::kDiscrepancy && sample.cause == found.cause.text;
-    if (sample.trace != found.trace || (!fails && sample.verdict != SampleVerdict::kClean))
-      continue;
+        sample.verdict == PageVerdict::kDiscrepancy && sample.cause == found.cause.text;
+    if (sample.trace != found.trace || (!fails && sample.verdict != PageVerdict::kClean)) continue;
     if (++(fails ? failed : clean) <= kMost) runs.push_back({sample.start, fails});
   }
   // Those that are numbers in each of the runs.
@@ -173,9 +172,7 @@ void add_repair(const PageOptions& options, Context& context, PageData& page) {
 void judge_executions(const harness::JournalText& journal, const ScenarioModel& loaded,
                       Context& context, PageData& page) {
   constexpr std::size_t kMost = 2000;
-  const auto is_open = [](const PageSample& one) {
-    return one.verdict == SampleVerdict::kNotJudged;
-  };
+  const auto is_open = [](const PageSample& one) { return one.verdict == PageVerdict::kNotJudged; };
   if (std::none_of(page.samples.begin(), page.samples.end(), is_open)) return;
   auto loop = ClosedLoop::make(loaded, context);
   if (!loop) return;
@@ -192,7 +189,7 @@ void judge_executions(const harness::JournalText& journal, const ScenarioModel& 
                                                record->second, loaded.scenario.comparison());
     if (!judgement.missing.empty() || judgement.admitted == base::Known::kUndecided) continue;
     const bool clean = judgement.admitted == base::Known::kYes;
-    sample.verdict = clean ? SampleVerdict::kClean : SampleVerdict::kDiscrepancy;
+    sample.verdict = clean ? PageVerdict::kClean : PageVerdict::kDiscrepancy;
     if (!clean) sample.cause = judgement.cause.text;
   }
 }
@@ -228,7 +225,7 @@ void add_further(const harness::JournalText& further, const ScenarioModel& loade
       const auto judged =
           harness::judge(*loaded.scenario.mapping, *fluents, *trace, record.observations);
       const bool clean = judged.matches(comparison);
-      out.verdict = clean ? SampleVerdict::kClean : SampleVerdict::kDiscrepancy;
+      out.verdict = clean ? PageVerdict::kClean : PageVerdict::kDiscrepancy;
       if (!clean) out.cause = harness::cause_of(*trace, judged, comparison, record.outcomes).text;
     }
     page.samples.push_back(std::move(out));

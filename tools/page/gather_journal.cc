@@ -107,7 +107,7 @@ PageSample page_sample(const SampleRecord& record, const PageData& page) {
                      record.path->end == PathEnd::kTimeLimit || record.path->end == PathEnd::kCut;
   }
   if (record.status == harness::SampleStatus::kLost) {
-    out.verdict = SampleVerdict::kLost;
+    out.verdict = PageVerdict::kLost;
     out.cause = "lost: " + record.reason;
   }
   return out;
@@ -126,7 +126,7 @@ class TimelineMaker {
     fluents_.emplace(*symbols_);
   }
 
-  PageTimeline make(const SampleRecord& record, SampleVerdict verdict) const {
+  PageTimeline make(const SampleRecord& record, PageVerdict verdict) const {
     PageTimeline out;
     out.trace = record.trace;
     out.sample = record.sample;
@@ -234,7 +234,7 @@ class TimelineMaker {
              row.predicted[t] != row.observed[t];
     };
     const auto count = out.steps.size() + 1;
-    if (out.verdict == SampleVerdict::kDiscrepancy) {
+    if (out.verdict == PageVerdict::kDiscrepancy) {
       for (std::size_t t = 0; t < count && !out.parting; ++t) {
         for (const auto& [name, row] : rows) {
           if (differs(row, t)) out.parting = t;
@@ -261,7 +261,7 @@ class TimelineMaker {
       row.changes = parts || (moves(row.predicted) && (is_read || loaded_ == nullptr)) ||
                     (is_read && moves(row.observed));
       const bool is_first = out.parting && (differs(row, *out.parting) || is_named(found, name));
-      if (parts && out.verdict == SampleVerdict::kDiscrepancy) {
+      if (parts && out.verdict == PageVerdict::kDiscrepancy) {
         row.role = is_first ? TimelineRow::Role::kFirst : TimelineRow::Role::kFollows;
       }
       out.rows.push_back(std::move(row));
@@ -332,10 +332,10 @@ void add_journal(const harness::JournalText& journal, const harness::JournalText
         journal.samples.contains({trace, sample, harness::DrawPhase::kConfirm});
     const auto* found = discrepancy_in(page, trace, sample);
     if (found != nullptr || (!has_report && was_repeated)) {
-      out.verdict = SampleVerdict::kDiscrepancy;
+      out.verdict = PageVerdict::kDiscrepancy;
       out.cause = found != nullptr ? found->cause.text : "";
-    } else if (out.verdict != SampleVerdict::kLost && clean_otherwise[trace]) {
-      out.verdict = SampleVerdict::kClean;
+    } else if (out.verdict != PageVerdict::kLost && clean_otherwise[trace]) {
+      out.verdict = PageVerdict::kClean;
     }
     page.samples.push_back(std::move(out));
   }
@@ -349,10 +349,10 @@ void add_timelines(const harness::JournalText& journal, const ScenarioModel* loa
     const auto record =
         journal.samples.find({sample.trace, sample.sample, harness::DrawPhase::kCertify});
     if (record == journal.samples.end()) continue;
-    const bool is_bad = sample.verdict == SampleVerdict::kDiscrepancy;
+    const bool is_bad = sample.verdict == PageVerdict::kDiscrepancy;
     const bool is_told = is_bad && (page.discrepancies.empty() ||
                                     discrepancy_in(page, sample.trace, sample.sample) != nullptr);
-    const bool is_fine = !is_bad && sample.verdict != SampleVerdict::kLost;
+    const bool is_fine = !is_bad && sample.verdict != PageVerdict::kLost;
     if (!is_told && (!is_fine || !with_clean.insert(sample.trace).second)) continue;
     if (page.timelines.size() < kMostTimelines) {
       page.timelines.push_back(timelines.make(record->second, sample.verdict));
@@ -361,7 +361,7 @@ void add_timelines(const harness::JournalText& journal, const ScenarioModel* loa
     }
   }
   std::stable_sort(page.timelines.begin(), page.timelines.end(), [](const auto& a, const auto& b) {
-    return (a.verdict == SampleVerdict::kDiscrepancy) > (b.verdict == SampleVerdict::kDiscrepancy);
+    return (a.verdict == PageVerdict::kDiscrepancy) > (b.verdict == PageVerdict::kDiscrepancy);
   });
 }
 

@@ -31,15 +31,14 @@ std::vector<const PageSample*> chosen_runs(
   const auto add_clean_of = [&](std::int64_t trace) {
     if (with_clean.contains(trace)) return;
     for (const auto& sample : page.samples) {
-      if (sample.trace != trace || sample.verdict != SampleVerdict::kClean || !has(sample))
-        continue;
+      if (sample.trace != trace || sample.verdict != PageVerdict::kClean || !has(sample)) continue;
       out.push_back(&sample);
       with_clean.insert(trace);
       return;
     }
   };
   for (const auto& sample : page.samples) {
-    if (sample.verdict != SampleVerdict::kDiscrepancy || !has(sample)) continue;
+    if (sample.verdict != PageVerdict::kDiscrepancy || !has(sample)) continue;
     if (!causes.insert({sample.trace, sample.cause}).second) continue;
     out.push_back(&sample);
     add_clean_of(sample.trace);
@@ -109,7 +108,7 @@ void add_motion(PageData& page) {
   }
   // Suggests the simulation that one would want to see first.
   for (const auto& sample : page.samples) {
-    if (sample.verdict != SampleVerdict::kDiscrepancy || sample.origin == SampleOrigin::kFurther)
+    if (sample.verdict != PageVerdict::kDiscrepancy || sample.origin == SampleOrigin::kFurther)
       continue;
     if (!on_record.contains({sample.trace, sample.sample})) {
       page.not_recorded = std::pair(sample.trace, sample.sample);

@@ -114,7 +114,7 @@ std::vector<PageProofPart> grid_of(const harness::TestCertificate& test,
   return cells;
 }
 
-std::optional<PageProofMap> map_of(const harness::Certificate& certificate,
+std::optional<PageProofMap> map_of(const harness::GeometryCertificate& certificate,
                                    const harness::TestCertificate& test) {
   const auto& region = certificate.region;
   if (region.size() < 2 || std::max({test.safe, test.refuted, test.open}) > 1.0 - 1e-9) {
@@ -151,8 +151,8 @@ std::optional<PageProofMap> map_of(const harness::Certificate& certificate,
 }
 
 /// Counts starts by verdict of their box; none where a variable of the proof is not on record.
-void count_starts(const harness::Certificate& certificate, const harness::TestCertificate& test,
-                  const PageData& page, PageProofTest& out) {
+void count_starts(const harness::GeometryCertificate& certificate,
+                  const harness::TestCertificate& test, const PageData& page, PageProofTest& out) {
   std::vector<std::size_t> columns;
   for (const auto& name : certificate.variables) {
     const auto found = std::find(page.variables.begin(), page.variables.end(), name);
@@ -162,7 +162,7 @@ void count_starts(const harness::Certificate& certificate, const harness::TestCe
   if (page.closed_loop || page.samples.size() * test.boxes.size() > kMostLookUps) return;
   for (const auto& sample : page.samples) {
     if (sample.trace != certificate.trace || !sample.began_in(certificate.initial_state) ||
-        sample.origin != SampleOrigin::kDrawn || sample.verdict == SampleVerdict::kNotJudged) {
+        sample.origin != SampleOrigin::kDrawn || sample.verdict == PageVerdict::kNotJudged) {
       continue;
     }
     std::vector<double> start;
@@ -171,13 +171,13 @@ void count_starts(const harness::Certificate& certificate, const harness::TestCe
     if (box == nullptr) continue;
     auto& began = out.began[static_cast<std::size_t>(box->verdict)];
     ++began.simulations;
-    began.not_clean += sample.verdict == SampleVerdict::kClean ? 0 : 1;
+    began.not_clean += sample.verdict == PageVerdict::kClean ? 0 : 1;
   }
 }
 
 /// Why the certificate is not about this run; empty: it is.
-std::string misfit_of(const harness::Certificate& certificate, const harness::JournalHeader& header,
-                      const PageData& page) {
+std::string misfit_of(const harness::GeometryCertificate& certificate,
+                      const harness::JournalHeader& header, const PageData& page) {
   if (certificate.scenario_hash != header.scenario_hash) {
     return "it is of another scenario, or of one that was changed since";
   }
@@ -199,7 +199,7 @@ std::string misfit_of(const harness::Certificate& certificate, const harness::Jo
   return {};
 }
 
-PageProof proof_of(const harness::Certificate& certificate, const PageData& page) {
+PageProof proof_of(const harness::GeometryCertificate& certificate, const PageData& page) {
   PageProof out;
   out.trace = certificate.trace;
   out.initial_state = certificate.initial_state;
@@ -246,7 +246,7 @@ void add_proofs(const PageOptions& options, const harness::JournalHeader& header
       refuse("it cannot be read; " + messages_of(own));
       continue;
     }
-    harness::Certificate certificate;
+    harness::GeometryCertificate certificate;
     if (const auto fault = harness::read_certificate(*text, certificate)) {
       refuse(*fault);
       continue;

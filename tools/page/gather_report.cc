@@ -10,15 +10,15 @@
 
 namespace parallax::tools {
 
-const char* to_string(SampleVerdict verdict) {
+const char* to_string(PageVerdict verdict) {
   switch (verdict) {
-    case SampleVerdict::kClean:
+    case PageVerdict::kClean:
       return "clean";
-    case SampleVerdict::kDiscrepancy:
+    case PageVerdict::kDiscrepancy:
       return "discrepancy";
-    case SampleVerdict::kLost:
+    case PageVerdict::kLost:
       return "lost";
-    case SampleVerdict::kNotJudged:
+    case PageVerdict::kNotJudged:
       break;
   }
   return "not judged";

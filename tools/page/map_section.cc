@@ -12,9 +12,8 @@ namespace parallax::tools {
 namespace {
 
 constexpr double kWidth = 1160.0, kMargin = 40.0, kLeast = 240.0, kMost = 640.0;
-constexpr std::array<SampleVerdict, 4> kVerdicts = {SampleVerdict::kClean,
-                                                    SampleVerdict::kNotJudged, SampleVerdict::kLost,
-                                                    SampleVerdict::kDiscrepancy};
+constexpr std::array<PageVerdict, 4> kVerdicts = {PageVerdict::kClean, PageVerdict::kNotJudged,
+                                                  PageVerdict::kLost, PageVerdict::kDiscrepancy};
 
 struct Box2 {
   double x0 = INFINITY, y0 = INFINITY, x1 = -INFINITY, y1 = -INFINITY;
@@ -172,7 +171,7 @@ class MapPlot {
     std::string out;
     std::size_t shown = 0;
     for (const auto& sample : page_.samples) {
-      if (sample.verdict != SampleVerdict::kDiscrepancy || shown >= 3 ||
+      if (sample.verdict != PageVerdict::kDiscrepancy || shown >= 3 ||
           sample.origin == SampleOrigin::kFurther)
         continue;
       ++shown;

@@ -124,9 +124,9 @@ Json run_json(const PageMotion& run, std::size_t scene, std::optional<std::size_
 
 /// The clean run of the same trace that one is shown beside.
 std::optional<std::size_t> partner_of(const std::vector<PageMotion>& runs, std::size_t i) {
-  if (runs[i].verdict == SampleVerdict::kClean) return std::nullopt;
+  if (runs[i].verdict == PageVerdict::kClean) return std::nullopt;
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    if (runs[k].trace == runs[i].trace && runs[k].verdict == SampleVerdict::kClean) return k;
+    if (runs[k].trace == runs[i].trace && runs[k].verdict == PageVerdict::kClean) return k;
   }
   return std::nullopt;
 }

@@ -19,7 +19,7 @@ struct Recording;
 namespace parallax::tools {
 
 /// Verdict on a simulation, as far as the run folder tells.
-enum class SampleVerdict : std::uint8_t { kClean, kDiscrepancy, kLost, kNotJudged };
+enum class PageVerdict : std::uint8_t { kClean, kDiscrepancy, kLost, kNotJudged };
 
 /// Origin of a simulation's start. Claims are about drawn starts alone.
 enum class SampleOrigin : std::uint8_t {
@@ -56,7 +56,7 @@ struct TimelineRow {
 
 struct PageTimeline {
   std::int64_t trace = 0, sample = 0;
-  SampleVerdict verdict = SampleVerdict::kClean;
+  PageVerdict verdict = PageVerdict::kClean;
   std::vector<PageStep> steps;
   std::vector<TimelineRow> rows;       // those that differ first
   std::optional<std::size_t> parting;  // timepoint of the first difference
@@ -112,7 +112,7 @@ struct PageSample {
   std::int64_t trace = 0, sample = 0;
   std::int64_t start_state = 0;  // number of the trace's initial state; 0: the only one
   std::uint64_t seed = 0;
-  SampleVerdict verdict = SampleVerdict::kNotJudged;
+  PageVerdict verdict = PageVerdict::kNotJudged;
   SampleOrigin origin = SampleOrigin::kDrawn;
   bool unfinished = false;  // a limit ended it: nothing is said of it
   std::string cause;
@@ -139,7 +139,7 @@ struct PageRegion {
 /// The recorded motion of one simulation.
 struct PageMotion {
   std::int64_t trace = 0, sample = 0;
-  SampleVerdict verdict = SampleVerdict::kNotJudged;
+  PageVerdict verdict = PageVerdict::kNotJudged;
   std::string cause;
   std::optional<std::size_t> parting;  // timepoint of the first difference
   std::shared_ptr<const harness::Recording> recording;
@@ -292,7 +292,7 @@ struct PageData {
 /// "2.4"
 std::string sample_name(std::int64_t trace, std::int64_t sample);
 /// "clean", "discrepancy", "lost", "not judged"
-const char* to_string(SampleVerdict verdict);
+const char* to_string(PageVerdict verdict);
 /// "drawn", "chosen start", "search", "made afterwards"
 const char* to_string(SampleOrigin origin);
 

@@ -44,16 +44,16 @@ std::string DotPath::element(std::string_view classes) const {
   return fmt::format("<path class=\"{}\" d=\"{}\"/>\n", classes, d_);
 }
 
-std::string dot_class(SampleVerdict verdict, bool aside) {
+std::string dot_class(PageVerdict verdict, bool aside) {
   const std::string more = aside ? " aside" : "";
   switch (verdict) {
-    case SampleVerdict::kClean:
+    case PageVerdict::kClean:
       return "dot clean" + more;
-    case SampleVerdict::kDiscrepancy:
+    case PageVerdict::kDiscrepancy:
       return "dot bad" + more;
-    case SampleVerdict::kLost:
+    case PageVerdict::kLost:
       return "dot lost" + more;
-    case SampleVerdict::kNotJudged:
+    case PageVerdict::kNotJudged:
       break;
   }
   return "dot open" + more;
@@ -65,7 +65,7 @@ std::vector<const PageSample*> dotted(const std::vector<const PageSample*>& samp
   for (const bool wrong : {true, false}) {
     const auto most = wrong ? kMostDots / 2 : kMostDots;
     for (const auto* sample : samples) {
-      const bool is_wrong = sample->verdict != SampleVerdict::kClean;
+      const bool is_wrong = sample->verdict != PageVerdict::kClean;
       if (is_wrong == wrong && out.size() < most) out.push_back(sample);
     }
   }

@@ -36,7 +36,7 @@ class DotPath {
 
 /// The dots of one kind of simulation. Failures are larger squares, so that the plot does not rely
 /// on colour alone; `aside`: no claim is about it.
-std::string dot_class(SampleVerdict verdict, bool aside);
+std::string dot_class(PageVerdict verdict, bool aside);
 
 /// With more simulations than this, a script draws all dots on a canvas.
 inline constexpr std::size_t kMostDots = 1000;

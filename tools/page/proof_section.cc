@@ -118,8 +118,8 @@ std::string map_dots(const PageData& page, const PageProof& proof, const PagePro
   }
   std::string out;
   const auto shown = dotted(samples);
-  for (const auto verdict : {SampleVerdict::kClean, SampleVerdict::kNotJudged, SampleVerdict::kLost,
-                             SampleVerdict::kDiscrepancy}) {
+  for (const auto verdict : {PageVerdict::kClean, PageVerdict::kNotJudged, PageVerdict::kLost,
+                             PageVerdict::kDiscrepancy}) {
     DotPath dots;
     for (const auto* sample : shown) {
       const double a = sample->start[u], b = sample->start[v];

@@ -38,8 +38,8 @@ class Panel {
         px(y_.from - y_.to), canvas_words());
     out += rule() + axes();
     const auto shown = dotted(plotted_.samples);
-    for (const auto verdict : {SampleVerdict::kClean, SampleVerdict::kNotJudged,
-                               SampleVerdict::kLost, SampleVerdict::kDiscrepancy}) {
+    for (const auto verdict : {PageVerdict::kClean, PageVerdict::kNotJudged, PageVerdict::kLost,
+                               PageVerdict::kDiscrepancy}) {
       for (const bool aside : {true, false}) {
         DotPath dots;
         for (const auto* sample : shown) {

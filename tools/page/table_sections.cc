@@ -21,8 +21,8 @@ std::string sample_row(const PageData& page, const PageSample& sample) {
       "class=\"num\">{}</td>"
       "<td class=\"num\">{}</td><td class=\"num\">{}</td><td><code>{}</code></td></tr>\n",
       sample_name(sample.trace, sample.sample), verdict_class(to_string(sample.verdict)),
-      sample.unfinished && sample.verdict == SampleVerdict::kClean ? "did not end"
-                                                                   : to_string(sample.verdict),
+      sample.unfinished && sample.verdict == PageVerdict::kClean ? "did not end"
+                                                                 : to_string(sample.verdict),
       to_string(sample.origin), html_short(sample.cause), sample.events, number(sample.sim_time_s),
       sample.seed, html_short(is_own ? replay_words(page, sample.trace, sample.sample) : ""));
 }
@@ -181,9 +181,8 @@ std::string data_block(const PageData& page) {
     for (std::size_t body = 0; body < sample.ways.size(); ++body) {
       const auto& way = sample.ways[body];
       out += body > 0 ? ",[" : "[";
-      const bool whole =
-          points + way.size() <= kMostPoints ||
-          (sample.verdict == SampleVerdict::kDiscrepancy && points < 2 * kMostPoints);
+      const bool whole = points + way.size() <= kMostPoints ||
+                         (sample.verdict == PageVerdict::kDiscrepancy && points < 2 * kMostPoints);
       for (std::size_t t = 0; t < way.size(); ++t) {
         const bool is_end = t == 0 || t + 1 == way.size();
         if (!is_end && (!whole || way[t] == way[t - 1])) continue;

@@ -90,13 +90,13 @@ std::string timeline_section(const PageData& page) {
       if (!row.changes) ++steady;
       if (row.changes || i < kMostInFull) rows += row_html(row, timeline);
     }
-    const bool is_open = i == 0 || timeline.verdict == SampleVerdict::kDiscrepancy;
+    const bool is_open = i == 0 || timeline.verdict == PageVerdict::kDiscrepancy;
     out += fmt::format(
         "<details class=\"timeline\"{}><summary>Simulation {} <span class=\"tag {}\">{}</span>{}"
         "</summary>\n",
         is_open && i < 4 ? " open" : "", name, verdict_class(to_string(timeline.verdict)),
         to_string(timeline.verdict),
-        timeline.verdict == SampleVerdict::kDiscrepancy ? "" : " to compare with");
+        timeline.verdict == PageVerdict::kDiscrepancy ? "" : " to compare with");
     if (steady > 0 && i < kMostInFull) {
       out += fmt::format(
           "<input type=\"checkbox\" class=\"all\" id=\"all-{0}\"><label for=\"all-{0}\">Show also "

@@ -55,7 +55,8 @@ bool add_states(const compiler::AtomIndex& index, const Evidence& evidence, std:
   return true;
 }
 
-Admission::Admission(const compiler::CompiledModel& model, const std::atomic<bool>& stop)
+EvidenceAdmission::EvidenceAdmission(const compiler::CompiledModel& model,
+                                     const std::atomic<bool>& stop)
     : session_(model, runtime::make_cadical_solver(&stop)),
       index_(model),
       undemanded_(runtime::undemanded_events(model)) {
@@ -64,9 +65,9 @@ Admission::Admission(const compiler::CompiledModel& model, const std::atomic<boo
   }
 }
 
-std::optional<std::vector<Literal>> Admission::facts(const Evidence& evidence, std::size_t steps,
-                                                     std::size_t states,
-                                                     std::optional<std::size_t> without) {
+std::optional<std::vector<Literal>> EvidenceAdmission::facts(const Evidence& evidence,
+                                                             std::size_t steps, std::size_t states,
+                                                             std::optional<std::size_t> without) {
   const auto& model = session_.model();
   std::vector<Literal> out;
   for (std::size_t i = 0; i < steps; ++i) {
@@ -85,14 +86,15 @@ std::optional<std::vector<Literal>> Admission::facts(const Evidence& evidence, s
   return out;
 }
 
-SolveStatus Admission::goes(const Evidence& evidence, std::size_t t,
-                            std::optional<std::size_t> without) {
+SolveStatus EvidenceAdmission::goes(const Evidence& evidence, std::size_t t,
+                                    std::optional<std::size_t> without) {
   const auto assumptions = facts(evidence, t, t + 1, without);
   if (!assumptions) return SolveStatus::kUnsatisfiable;
   return session_.solve(static_cast<Timepoint>(t), *assumptions);
 }
 
-Admission::Answer Admission::ask(const Evidence& evidence, std::optional<std::size_t> refuse_at) {
+EvidenceAdmission::Answer EvidenceAdmission::ask(const Evidence& evidence,
+                                                 std::optional<std::size_t> refuse_at) {
   Answer answer;
   std::optional<std::size_t> without;
   const auto possible = [&](std::size_t t) {
@@ -127,7 +129,7 @@ Admission::Answer Admission::ask(const Evidence& evidence, std::optional<std::si
   return answer;
 }
 
-Evidence::State Admission::impossible(const Evidence& evidence, std::size_t t) {
+Evidence::State EvidenceAdmission::impossible(const Evidence& evidence, std::size_t t) {
   Evidence::State out;
   const auto before = facts(evidence, t, t, std::nullopt);
   for (const auto& [fluent, holds] : evidence.states[t]) {

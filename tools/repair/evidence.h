@@ -50,10 +50,10 @@ bool add_states(const compiler::AtomIndex& index, const Evidence& evidence, std:
                 std::vector<compiler::Literal>& out);
 
 /// Asks a model without a plan how far it admits the evidence.
-class Admission {
+class EvidenceAdmission {
  public:
   /// The model, and `stop`, outlive the object.
-  Admission(const compiler::CompiledModel& model, const std::atomic<bool>& stop);
+  EvidenceAdmission(const compiler::CompiledModel& model, const std::atomic<bool>& stop);
 
   struct Answer {
     std::size_t reached = 0;  // the last timepoint up to which it goes

@@ -122,11 +122,11 @@ void ExperimentChooser::find(Pair pair,
   runtime::DifferenceFinder finder(a, of_first, b, of_second, vocabulary, kMostRefinements, stop);
   for (int i = 0; i < kMostTries && !context_.stopped(); ++i) {
     auto answer = finder.find();
-    if (answer == runtime::Answer::kNone && i == 0) nothing_.insert(pair);
-    if (answer != runtime::Answer::kFound) return;
+    if (answer == runtime::DifferenceAnswer::kNone && i == 0) nothing_.insert(pair);
+    if (answer != runtime::DifferenceAnswer::kFound) return;
     auto trace = finder.trace();
     auto by = finder.excluded_by();
-    while (by > 1 && finder.find(by - 1) == runtime::Answer::kFound) {
+    while (by > 1 && finder.find(by - 1) == runtime::DifferenceAnswer::kFound) {
       trace = finder.trace();
       by = finder.excluded_by();
     }

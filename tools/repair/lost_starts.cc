@@ -29,9 +29,9 @@ using runtime::SolveStatus;
 constexpr std::size_t kMostStarts = 200;
 
 /// A model, asked which initial states it has that lead to its constraints.
-class Starts {
+class StartFinder {
  public:
-  Starts(const compiler::CompiledModel& model, const std::atomic<bool>& stop)
+  StartFinder(const compiler::CompiledModel& model, const std::atomic<bool>& stop)
       : session_(model, runtime::make_cadical_solver(&stop)), index_(model) {
     for (const auto& fluent : model.fluents) {
       if (fluent.slot)
@@ -87,7 +87,7 @@ class Starts {
 
 LostStarts lost_starts(const compiler::CompiledModel& before, const compiler::CompiledModel& after,
                        const std::atomic<bool>& stop) {
-  Starts had(before, stop), has(after, stop);
+  StartFinder had(before, stop), has(after, stop);
   LostStarts out;
   while (had.find({})) {
     if (out.of == kMostStarts) {

@@ -321,7 +321,7 @@ class PlanRepair {
     options.counts_only = true;
     const auto difference = runtime::compare_traces(before.compared(), behind->compared(), options);
     const auto number = [](const runtime::OneSided& side) -> std::optional<runtime::TraceNumber> {
-      if (side.answer == runtime::Answer::kUnknown) return std::nullopt;
+      if (side.answer == runtime::DifferenceAnswer::kUnknown) return std::nullopt;
       return side.count;
     };
     out.lost = number(difference.lost);

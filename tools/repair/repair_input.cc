@@ -73,7 +73,7 @@ base::Status add_paths(const char* name, const RepairOptions& options, const Sce
 }
 
 /// Does the model forbid the step that the world refused?
-bool refused_by_both(Admission& admission, const Evidence& seen, std::size_t step) {
+bool refused_by_both(EvidenceAdmission& admission, const Evidence& seen, std::size_t step) {
   return seen.steps[step].failed && admission.ask(seen, step).refused;
 }
 
@@ -88,7 +88,7 @@ void find_partings(RepairInput& input, Context& context) {
     input.remarks.push_back("the model by itself cannot be compiled: " + why);
     return;
   }
-  Admission admission(*model, context.stop());
+  EvidenceAdmission admission(*model, context.stop());
   std::vector<Evidence> usable;
   for (auto& seen : input.evidence) {
     const auto answer = admission.ask(seen);

@@ -20,7 +20,7 @@ Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
     out.why = "no right model: " + wrong;
     return out;
   }
-  Admission admission(*model, context.stop());
+  EvidenceAdmission admission(*model, context.stop());
   for (const auto& seen : evidence) {
     const auto needed = seen.needed();
     std::optional<std::size_t> refuse_at;
@@ -66,7 +66,7 @@ TraceEffects TraceComparer::compare(const std::string& edited) {
   runtime::ComparedModel edited_model(other->model);
   const auto difference = runtime::compare_traces(*compared_, edited_model, options);
   const auto number = [](const runtime::OneSided& side) -> std::optional<runtime::TraceNumber> {
-    if (side.answer == runtime::Answer::kUnknown) return std::nullopt;
+    if (side.answer == runtime::DifferenceAnswer::kUnknown) return std::nullopt;
     return side.count;
   };
   out.lost = number(difference.lost);

@@ -108,11 +108,11 @@ std::string missing_evidence(const harness::RateExpectation& expect, const std::
   const auto bounds = to_string(claim);
   const auto level = harness::level_text(*expect.confidence) + " confidence";
   switch (weigh(claim, counts)) {
-    case harness::Evidence::kSupports:
+    case harness::RateVerdict::kSupports:
       return {};
-    case harness::Evidence::kRefutes:
+    case harness::RateVerdict::kRefutes:
       return fmt::format("{}: with {} the rate is not {}", found, level, bounds);
-    case harness::Evidence::kTooLittle:
+    case harness::RateVerdict::kTooLittle:
       break;
   }
   const auto enough = runs_to_tell(claim, counts, kMostRuns);

@@ -18,7 +18,7 @@ using base::xml_escaped;
 
 namespace {
 
-struct Tally {
+struct CaseTally {
   std::size_t tests = 0, failures = 0, errors = 0, skipped = 0;
   double wall_s = 0.0;
 
@@ -118,14 +118,14 @@ std::string utc_now() {
 std::string to_junit(const std::vector<SuiteCase>& cases, const std::vector<CaseResult>& results,
                      std::string_view timestamp, const harness::Quarantine& quarantine) {
   PARALLAX_REQUIRE(cases.size() == results.size(), "a result for every case");
-  Tally total;
+  CaseTally total;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     total.add(results[i], is_quarantined(cases[i], results[i], quarantine));
   }
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
   out += fmt::format("<testsuites name=\"parallax suite\" {}>\n", total.attributes());
   for (std::size_t i = 0; i < cases.size();) {
-    Tally tally;
+    CaseTally tally;
     std::string body;
     const auto& group = cases[i].group;
     for (; i < cases.size() && cases[i].group == group; ++i) {

@@ -34,15 +34,15 @@ std::int64_t one_too_many(const harness::TraceExpectation& expect) {
   return listed ? *listed + 1 : 0;
 }
 
-enum class Constraints : std::uint8_t { kCount, kIgnored };
+enum class StatedConstraints : std::uint8_t { kCount, kIgnored };
 
 /// Options for every process of the case: horizon, constraints, limits, permissions, models.
 CommandWords model_words(const harness::ManifestCase& one, const RunnerOptions& options,
-                         Constraints constraints = Constraints::kCount) {
+                         StatedConstraints constraints = StatedConstraints::kCount) {
   CommandWords command;
   auto& words = command.options;
   for (const auto& constraint : one.constraints) {
-    if (constraints == Constraints::kIgnored) break;
+    if (constraints == StatedConstraints::kIgnored) break;
     words.push_back("--until=" + constraint.text);  // also one that begins with `-`
   }
   if (one.horizon) words.insert(words.end(), {"--horizon", std::to_string(*one.horizon)});
@@ -199,7 +199,7 @@ bool check_property(const harness::ManifestCase& one, const std::string& propert
                     const RunnerOptions& options, Footprint& footprint,
                     const std::atomic<bool>& stop, std::optional<std::uint64_t> cpu_limit_s,
                     CaseResult& result) {
-  auto words = model_words(one, options, Constraints::kIgnored);
+  auto words = model_words(one, options, StatedConstraints::kIgnored);
   words.options.insert(words.options.begin(), {"verify", "--json", "--property=" + property});
   const auto child = run_this_program(words, footprint, stop, cpu_limit_s);
   result.messages = child.err;

@@ -118,10 +118,11 @@ struct Ours {
 
 Ours unrolled(const std::string& text, bool interleave) {
   struct NoRegions final : compiler::PoseLocator {
-    std::optional<std::string> region_of(std::string_view, const compiler::Pose&) const override {
+    std::optional<std::string> region_of(std::string_view,
+                                         const compiler::PlanPose&) const override {
       return std::nullopt;
     }
-    std::optional<Nearest> nearest(std::string_view, const compiler::Pose&) const override {
+    std::optional<Nearest> nearest(std::string_view, const compiler::PlanPose&) const override {
       return std::nullopt;
     }
   };

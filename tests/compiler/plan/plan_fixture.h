@@ -22,12 +22,13 @@ namespace parallax::compiler {
 class LineLocator final : public PoseLocator {
  public:
   std::optional<std::string> region_of(std::string_view /*function*/,
-                                       const Pose& pose) const override {
+                                       const PlanPose& pose) const override {
     if (pose.x_m >= 0.0 && pose.x_m < 1.0) return "r1";
     if (pose.x_m >= 1.0 && pose.x_m <= 2.0) return "r2";
     return std::nullopt;
   }
-  std::optional<Nearest> nearest(std::string_view /*function*/, const Pose& pose) const override {
+  std::optional<Nearest> nearest(std::string_view /*function*/,
+                                 const PlanPose& pose) const override {
     if (pose.x_m < 0.0) return Nearest{"r1", -pose.x_m};
     return Nearest{"r2", pose.x_m - 2.0};
   }

@@ -42,7 +42,7 @@ class PlanFolder {
     base::DiagnosticSink sink;
     base::PathGate gate;
     gate.admit_from(folder_);
-    std::vector<PlanPath> paths = {{folder_, std::nullopt}};
+    std::vector<PlanEntry> paths = {{folder_, std::nullopt}};
     for (auto& path : more) paths.push_back({folder_ / path, std::nullopt});
     const auto plan = load_plan_files(paths, gate, files, sink);
     warnings_ = sink.warning_count();

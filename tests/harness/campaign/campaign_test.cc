@@ -48,7 +48,7 @@ TEST_CASE("the first start that parts from the model ends the campaign, repeated
   REQUIRE(result->discrepancies.size() == 1);
   const auto& found = result->discrepancies[0];
   CHECK(found.sample == expected);
-  CHECK(found.confirmation == Confirmation::kBitEqual);
+  CHECK(found.confirmation == RepeatResult::kBitEqual);
   CHECK(found.first_divergence == 2);
   REQUIRE(found.fluents.size() == 2);
   CHECK(found.fluents[0].fluent == "BoxIn(r1)");
@@ -139,7 +139,7 @@ TEST_CASE("a discrepancy that does not repeat is reported as such") {
   const auto result = bench.run();
   REQUIRE(result.has_value());
   REQUIRE(result->discrepancies.size() == 1);
-  CHECK(result->discrepancies[0].confirmation == Confirmation::kDiffers);
+  CHECK(result->discrepancies[0].confirmation == RepeatResult::kDiffers);
   CHECK(campaign_text(*result, {}).find("not deterministic") != std::string::npos);
 }
 

@@ -107,7 +107,7 @@ TEST_CASE("neither is a loss repeated when a discrepancy is simulated once more"
   const auto result = bench.run();
   REQUIRE(result.has_value());
   REQUIRE(result->discrepancies.size() == 1);
-  CHECK(result->discrepancies[0].confirmation == Confirmation::kLost);
+  CHECK(result->discrepancies[0].confirmation == RepeatResult::kLost);
   CHECK(resets == 2);
 }
 

@@ -173,7 +173,7 @@ TEST_CASE("a report gives back an executed plan, and every way to confirm and to
     path.end = end;
     check_round_trip(*result);
   }
-  for (const auto how : {Confirmation::kBitEqual, Confirmation::kDiffers, Confirmation::kLost}) {
+  for (const auto how : {RepeatResult::kBitEqual, RepeatResult::kDiffers, RepeatResult::kLost}) {
     found.confirmation = how;
     check_round_trip(*result);
   }

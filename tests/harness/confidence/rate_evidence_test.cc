@@ -26,7 +26,7 @@ std::vector<double> outcomes(std::int64_t n, double p) {
 }
 
 /// The probability that the counts of n runs are taken for `answer` if the rate is p.
-double chance(const RateClaim& claim, std::int64_t n, double p, Evidence answer) {
+double chance(const RateClaim& claim, std::int64_t n, double p, RateVerdict answer) {
   const auto distribution = outcomes(n, p);
   double sum = 0.0;
   for (std::int64_t k = 0; k <= n; ++k) {
@@ -47,8 +47,8 @@ TEST_CASE("a false claim is supported, and a true one refuted, no more often tha
         for (int i = 0; i <= 100; ++i) {
           const double p = 0.01 * i;
           const bool is_true = (lower <= 0.0 || lower < p) && (upper >= 1.0 || p < upper);
-          if (!is_true) CHECK(chance(claim, n, p, Evidence::kSupports) <= error);
-          if (is_true) CHECK(chance(claim, n, p, Evidence::kRefutes) <= error);
+          if (!is_true) CHECK(chance(claim, n, p, RateVerdict::kSupports) <= error);
+          if (is_true) CHECK(chance(claim, n, p, RateVerdict::kRefutes) <= error);
         }
       }
     }
@@ -56,22 +56,22 @@ TEST_CASE("a false claim is supported, and a true one refuted, no more often tha
 }
 
 TEST_CASE("enough runs do tell") {
-  CHECK(chance({0.0, 0.05, 0.99}, 400, 0.01, Evidence::kSupports) > 0.95);
-  CHECK(chance({0.0, 0.05, 0.99}, 400, 0.15, Evidence::kRefutes) > 0.99);
-  CHECK(chance({0.1, 0.3, 0.95}, 400, 0.2, Evidence::kSupports) > 0.99);
-  CHECK(chance({0.1, 0.3, 0.95}, 400, 0.45, Evidence::kRefutes) > 0.99);
+  CHECK(chance({0.0, 0.05, 0.99}, 400, 0.01, RateVerdict::kSupports) > 0.95);
+  CHECK(chance({0.0, 0.05, 0.99}, 400, 0.15, RateVerdict::kRefutes) > 0.99);
+  CHECK(chance({0.1, 0.3, 0.95}, 400, 0.2, RateVerdict::kSupports) > 0.99);
+  CHECK(chance({0.1, 0.3, 0.95}, 400, 0.45, RateVerdict::kRefutes) > 0.99);
 }
 
 TEST_CASE("lost runs count as what is worse for either answer") {
   const RateClaim rare{0.0, 0.05, 0.99}, often{0.5, 1.0, 0.99};
-  CHECK(weigh(rare, {90, 0, 0}) == Evidence::kSupports);
-  CHECK(weigh(rare, {90, 0, 1}) == Evidence::kTooLittle);
-  CHECK(weigh(rare, {90, 15, 0}) == Evidence::kRefutes);
-  CHECK(weigh(rare, {90, 0, 15}) == Evidence::kTooLittle);
-  CHECK(weigh(often, {20, 20, 0}) == Evidence::kSupports);
-  CHECK(weigh(often, {20, 15, 5}) == Evidence::kTooLittle);
-  CHECK(weigh(often, {20, 0, 20}) == Evidence::kTooLittle);
-  CHECK(weigh(often, {0, 0, 0}) == Evidence::kTooLittle);
+  CHECK(weigh(rare, {90, 0, 0}) == RateVerdict::kSupports);
+  CHECK(weigh(rare, {90, 0, 1}) == RateVerdict::kTooLittle);
+  CHECK(weigh(rare, {90, 15, 0}) == RateVerdict::kRefutes);
+  CHECK(weigh(rare, {90, 0, 15}) == RateVerdict::kTooLittle);
+  CHECK(weigh(often, {20, 20, 0}) == RateVerdict::kSupports);
+  CHECK(weigh(often, {20, 15, 5}) == RateVerdict::kTooLittle);
+  CHECK(weigh(often, {20, 0, 20}) == RateVerdict::kTooLittle);
+  CHECK(weigh(often, {0, 0, 0}) == RateVerdict::kTooLittle);
 }
 
 TEST_CASE("the number of runs that can support a claim can, and one less cannot") {
@@ -82,7 +82,7 @@ TEST_CASE("the number of runs that can support a claim can, and one less cannot"
     const RateClaim claim{lower, upper, 0.95};
     const auto supports = [&](std::int64_t n) {
       for (std::int64_t k = 0; k <= n; ++k) {
-        if (weigh(claim, {n, k, 0}) == Evidence::kSupports) return true;
+        if (weigh(claim, {n, k, 0}) == RateVerdict::kSupports) return true;
       }
       return false;
     };
@@ -96,12 +96,12 @@ TEST_CASE("the number of runs that can support a claim can, and one less cannot"
 TEST_CASE("how many runs would tell is told, if any would") {
   const RateClaim claim{0.0, 0.05, 0.99};
   const RateCounts few{100, 2, 0};
-  REQUIRE(weigh(claim, few) == Evidence::kTooLittle);
+  REQUIRE(weigh(claim, few) == RateVerdict::kTooLittle);
   const auto enough = runs_to_tell(claim, few, 100000);
   REQUIRE(enough);
   CHECK(*enough > 100);
   CHECK(weigh(claim, {*enough, std::llround(0.02 * static_cast<double>(*enough)), 0}) ==
-        Evidence::kSupports);
+        RateVerdict::kSupports);
   CHECK(!runs_to_tell(claim, {100, 5, 0}, 100000));   // the border itself
   CHECK(!runs_to_tell(claim, {100, 0, 50}, 100000));  // the lost ones hide it
 }
@@ -161,7 +161,7 @@ TEST_CASE("runs that end as soon as they tell are taken for a false answer as se
   constexpr std::int64_t kRuns = 150;
   for (const auto& [lower, upper] : {std::pair{0.0, 0.1}, {0.2, 1.0}, {0.3, 0.7}}) {
     const RateClaim claim{lower, upper, 0.9};
-    std::vector<std::vector<Evidence>> told(kRuns + 1);
+    std::vector<std::vector<RateVerdict>> told(kRuns + 1);
     for (std::int64_t n = 1; n <= kRuns; ++n) {
       for (std::int64_t k = 0; k <= n; ++k) {
         told[static_cast<std::size_t>(n)].push_back(weigh(claim, {n, k, 0, false}));
@@ -178,8 +178,8 @@ TEST_CASE("runs that end as soon as they tell are taken for a false answer as se
           next[k + 1] += open[k] * p;
         }
         for (std::size_t k = 0; k < next.size(); ++k) {
-          if (told[n][k] == Evidence::kTooLittle) continue;
-          (told[n][k] == Evidence::kSupports ? supported : refuted) += next[k];
+          if (told[n][k] == RateVerdict::kTooLittle) continue;
+          (told[n][k] == RateVerdict::kSupports ? supported : refuted) += next[k];
           next[k] = 0.0;
         }
         open = std::move(next);

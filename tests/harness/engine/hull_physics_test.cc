@@ -277,7 +277,7 @@ TEST_CASE("probes, rays, bounds and sweeps see the hull, not the box round it") 
     turned.yaw_rad = 0.25 * std::numbers::pi;
     const auto second_owned = make_world(stepped_by(engine, world_of({turned})));
     auto& second = *second_owned;
-    const Bounds bounds = second.bounds(*second.layout().find_body("piece"));
+    const BodyBounds bounds = second.bounds(*second.layout().find_body("piece"));
     CHECK(bounds.high.y() == doctest::Approx(std::sqrt(0.5)));
     CHECK(bounds.low.x() == doctest::Approx(-std::sqrt(0.5)));
     // The lowest point of a hull on its tip, for starts that choose `bottom`.

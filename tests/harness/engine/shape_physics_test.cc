@@ -357,7 +357,7 @@ TEST_CASE("bounds hold a leaning shape closely, and rays meet its surface") {
     body.shapes.front().pitch_rad = 0.5 * std::numbers::pi;
     const auto owned = make_world(stepped_by(engine, world_of({body})));
     const PhysicsWorld& world = *owned;
-    const Bounds bounds = world.bounds(*world.layout().find_body("can"));
+    const BodyBounds bounds = world.bounds(*world.layout().find_body("can"));
     CHECK((bounds.high - Eigen::Vector3d(0.5, 0.1, 2.1)).norm() < 1e-9);
     const auto hit =
         world.ray_meets({0.0, -1.0, 2.0}, {0.0, 1.0, 2.0}, *world.layout().find_body("can"));

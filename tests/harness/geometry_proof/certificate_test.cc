@@ -41,9 +41,9 @@ struct Made {
   std::vector<ProofAction> calls = {world.action, world.action};
   std::vector<ProvableAction> actions =
       provable_actions(world.spec, layout, world.region, calls, {});
-  Certificate certificate;
+  GeometryCertificate certificate;
   explicit Made(std::int64_t boxes = 800) {
-    ProofLimits limits;
+    SubdivisionLimits limits;
     limits.boxes = boxes;
     certificate.scenario = "world.yaml";
     certificate.scenario_hash = "1234";
@@ -51,7 +51,7 @@ struct Made {
     certificate.variables = drawn_variables(world.region, certificate.region);
     certificate.actions = certify(actions, limits);
   }
-  CertificateCheck check(const Certificate& one) const {
+  CertificateCheck check(const GeometryCertificate& one) const {
     return check_certificate(one, {world.spec, layout, world.region, calls}, nullptr);
   }
 };
@@ -59,7 +59,7 @@ struct Made {
 TEST_CASE("a certificate that was written and read is confirmed, and a changed one is not") {
   const Made made;
   const std::string text = certificate_json(made.certificate);
-  Certificate read;
+  GeometryCertificate read;
   const auto fault = read_certificate(text, read);
   CAPTURE(fault.value_or(std::string()));
   REQUIRE_FALSE(fault);
@@ -72,29 +72,29 @@ TEST_CASE("a certificate that was written and read is confirmed, and a changed o
   CHECK(fine.tests.front().safe == doctest::Approx(said.safe));
   CHECK(fine.tests.front().refuted == doctest::Approx(said.refuted));
 
-  Certificate swapped = read;
+  GeometryCertificate swapped = read;
   for (DecidedBox& one : swapped.actions.front().tests.front().boxes) {
     if (one.verdict == BoxVerdict::kSafe) one.verdict = BoxVerdict::kRefuted;
   }
   CHECK(made.check(swapped).wrong > 0);
 
-  Certificate shorter = read;
+  GeometryCertificate shorter = read;
   shorter.actions.front().tests.front().boxes.pop_back();
   CHECK(!made.check(shorter).mismatch.empty());
 
-  Certificate renamed = read;
+  GeometryCertificate renamed = read;
   renamed.actions.front().event = "Go(elsewhere)";
   CHECK(!made.check(renamed).mismatch.empty());
 }
 
 TEST_CASE("an empty certificate and one that decides nothing confirm nothing") {
   const Made made(20);
-  Certificate empty = made.certificate;
+  GeometryCertificate empty = made.certificate;
   empty.actions.clear();
   CHECK(made.check(empty).mismatch == "");
   CHECK_FALSE(made.check(empty).is_confirmed());
 
-  Certificate open = made.certificate;
+  GeometryCertificate open = made.certificate;
   for (auto& action : open.actions) {
     for (auto& test : action.tests) {
       test.boxes = {{open.region, BoxVerdict::kOpen, {}}};
@@ -104,12 +104,12 @@ TEST_CASE("an empty certificate and one that decides nothing confirm nothing") {
       test.open = 1.0;
     }
   }
-  Certificate read;
+  GeometryCertificate read;
   CHECK_FALSE(read_certificate(certificate_json(open), read));
   CHECK(made.check(read).mismatch == "");
   CHECK_FALSE(made.check(read).is_confirmed());
 
-  Certificate twice = made.certificate;
+  GeometryCertificate twice = made.certificate;
   twice.actions.push_back(twice.actions.back());
   CHECK(!made.check(twice).mismatch.empty());
 }
@@ -119,23 +119,23 @@ TEST_CASE("assumptions of a certificate are held against their ranges and the wo
   for (const AssumptionField& field : assumption_fields()) {
     CAPTURE(field.name);
     for (const double value : {-1.0, -1e-9, 10.5, 1e300}) {
-      Certificate bad = made.certificate;
+      GeometryCertificate bad = made.certificate;
       bad.assumptions.*field.value = value;
       CHECK(!made.check(bad).mismatch.empty());
-      Certificate read;
+      GeometryCertificate read;
       CHECK(read_certificate(certificate_json(bad), read));
     }
     auto document = base::parse_ordered_json(certificate_json(made.certificate));
     document["assumptions"].erase(field.name);
-    Certificate read;
+    GeometryCertificate read;
     CHECK(read_certificate(base::json_text(document), read).value_or("") ==
           fmt::format("`{}` is missing", field.name));
   }
-  Certificate odd = made.certificate;
+  GeometryCertificate odd = made.certificate;
   odd.assumptions.sliders.emplace_back("nothing.q", Bounds1{0.0, 1.0});
   CHECK(!made.check(odd).mismatch.empty());
   // The second drive stands on how near to its goal the first one came.
-  Certificate nearer = made.certificate;
+  GeometryCertificate nearer = made.certificate;
   nearer.assumptions.goal_m = 0.0;
   CHECK(!made.check(nearer).mismatch.empty());
 }
@@ -190,7 +190,7 @@ nlohmann::ordered_json mutated(const nlohmann::ordered_json& document,
 /// Returns the first claim of the certificate that is found to be false, or an empty text. Samples
 /// starts of boxes with a verdict and decides them by the second evaluation of the true
 /// assumptions; texts and numbers must follow from the world.
-std::string false_claim(const Certificate& said, const Made& made, test::Random& random) {
+std::string false_claim(const GeometryCertificate& said, const Made& made, test::Random& random) {
   for (const auto& action : said.actions) {
     const auto& real = made.certificate.actions.at(action.number);
     if (action.event != real.event || action.controller != real.controller) return "another action";
@@ -240,7 +240,7 @@ TEST_CASE("no single mistake in a certificate makes it confirm more, or somethin
   int read_well = 0, accepted = 0;
   for (int n = 0; n < 1000; ++n) {
     const auto other = mutated(document, n % 2 == 0 ? few : places, random);
-    Certificate said;
+    GeometryCertificate said;
     if (read_certificate(base::json_text(other), said)) continue;
     ++read_well;
     const auto result = made.check(said);
@@ -266,7 +266,7 @@ TEST_CASE("what is no certificate is refused with a reason") {
         std::string("{\"kind\":\"parallax geometry proof\",\"version\":1,\"variables\":[\"x\"],"
                     "\"region\":[[0,1]],\"actions\":[{\"tests\":[{\"function\":\"f\",\"boxes\":"
                     "[{\"verdict\":\"fine\",\"bounds\":[[0,1]]}]}]}]}")}) {
-    Certificate certificate;
+    GeometryCertificate certificate;
     const auto fault = read_certificate(text, certificate);
     CAPTURE(text.substr(0, 200));
     REQUIRE(fault);

@@ -16,7 +16,7 @@ struct Proved {
         layout(lay_out(world.spec)),
         actions(provable_actions(world.spec, layout, world.region, {world.action}, {})) {
     REQUIRE(actions.front().tests.size() == 1);
-    ProofLimits limits;
+    SubdivisionLimits limits;
     limits.boxes = boxes;
     certified = certify(actions, limits);
   }

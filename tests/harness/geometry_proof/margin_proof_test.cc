@@ -25,7 +25,7 @@ Tally hold_against_controller(const WorldSpec& spec, const StartCuboid& region,
   CAPTURE(actions.back().left_to_simulation);
   REQUIRE(actions.back().tests.size() == 1);
   actions.erase(actions.begin(), actions.end() - 1);
-  ProofLimits limits;
+  SubdivisionLimits limits;
   limits.boxes = 600;
   const auto certified = certify(actions, limits);
   const TestCertificate& test = certified.front().tests.front();

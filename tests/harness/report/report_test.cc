@@ -197,7 +197,7 @@ TEST_CASE("a discrepancy that another simulator does not show is in doubt in eve
   auto opinion = std::make_shared<SecondOpinion>();
   opinion->first = "ode 0.16.2";
   opinion->other = "mujoco 2.2.2";
-  opinion->opinions = {{2, 4, true, "Place(r1): box-lost", Answer::kClean, ""}};
+  opinion->opinions = {{2, 4, true, "Place(r1): box-lost", OpinionAnswer::kClean, ""}};
   result.second_opinion = opinion;
   auto summary = unwrapped(campaign_summary(result, {}));
   CHECK(
@@ -213,7 +213,7 @@ TEST_CASE("a discrepancy that another simulator does not show is in doubt in eve
   other.sample = 9;
   other.first = {{"RobotIn(r9)", 1, true, false}};
   result.discrepancies.push_back(other);
-  opinion->opinions.push_back({2, 9, true, "other", Answer::kDiscrepancy, "the same"});
+  opinion->opinions.push_back({2, 9, true, "other", OpinionAnswer::kDiscrepancy, "the same"});
   const auto text = campaign_summary(result, {});
   summary = unwrapped(text);
   CHECK(
@@ -224,7 +224,7 @@ TEST_CASE("a discrepancy that another simulator does not show is in doubt in eve
   CHECK(text.find("parallax confirm out/two --sample 2.9\n") != std::string::npos);
   CHECK(campaign_text(result, {}).find("\nverdict: discrepancy, confirmed\n") != std::string::npos);
   // No answer is none.
-  opinion->opinions = {{2, 4, true, "Place(r1): box-lost", Answer::kNone, "lost"}};
+  opinion->opinions = {{2, 4, true, "Place(r1): box-lost", OpinionAnswer::kNone, "lost"}};
   result.discrepancies.pop_back();
   CHECK(campaign_summary(result, {}).starts_with("discrepancy, not confirmed: "));
   CHECK(unwrapped(campaign_text(result, {})).find("the step; mujoco gave no answer") !=

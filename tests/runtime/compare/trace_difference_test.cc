@@ -14,8 +14,8 @@
 namespace parallax::test {
 namespace {
 
-using runtime::Answer;
 using runtime::CompiledModel;
+using runtime::DifferenceAnswer;
 using runtime::Timepoint;
 using runtime::TraceDifference;
 
@@ -151,8 +151,8 @@ void check_side(const runtime::OneSided& side, const FullLists& first, const Ful
                 const CompiledModel& other, Timepoint horizon, Seen& seen) {
   std::size_t wanted = 0;
   for (const auto& key : first.traces()) wanted += second.traces().contains(key) ? 0 : 1;
-  REQUIRE(side.answer != Answer::kUnknown);
-  CHECK((side.answer == Answer::kFound) == (wanted != 0));
+  REQUIRE(side.answer != DifferenceAnswer::kUnknown);
+  CHECK((side.answer == DifferenceAnswer::kFound) == (wanted != 0));
   CHECK(side.count.exact);
   CHECK(side.count.value == wanted);
   if (side.refinements != 0) ++seen.refined;
@@ -189,8 +189,8 @@ void compare(const CompiledModel& first, const CompiledModel& second, Seen& seen
   ++seen.pairs;
   check_side(difference.lost, a, b, second, difference.horizon, seen);
   check_side(difference.gained, b, a, first, difference.horizon, seen);
-  const bool lost = difference.lost.answer == Answer::kFound;
-  const bool gained = difference.gained.answer == Answer::kFound;
+  const bool lost = difference.lost.answer == DifferenceAnswer::kFound;
+  const bool gained = difference.gained.answer == DifferenceAnswer::kFound;
   seen.lost += lost ? 1 : 0;
   seen.gained += gained ? 1 : 0;
   seen.differ += lost || gained ? 1 : 0;
@@ -300,8 +300,8 @@ TEST_CASE("a raised stop flag leaves the answers open") {
   runtime::DifferenceOptions options;
   options.stop = &stop;
   const auto difference = runtime::compare_traces(before.compiled, after.compiled, options);
-  CHECK(difference.lost.answer == Answer::kUnknown);
-  CHECK(difference.gained.answer == Answer::kUnknown);
+  CHECK(difference.lost.answer == DifferenceAnswer::kUnknown);
+  CHECK(difference.gained.answer == DifferenceAnswer::kUnknown);
 }
 
 TEST_CASE("numbers beyond listing come from the graphs") {
@@ -316,7 +316,7 @@ TEST_CASE("numbers beyond listing come from the graphs") {
   mpz_ui_pow_ui(three.get_mpz_t(), 3, 40);
   CHECK(difference.lost.count.exact);
   CHECK(difference.lost.count.value == four - three);
-  CHECK(difference.gained.answer == Answer::kNone);
+  CHECK(difference.gained.answer == DifferenceAnswer::kNone);
   REQUIRE(difference.lost.witness);
   CHECK(difference.lost.witness->excluded_by == 1);
   CHECK(difference.lost.witness->events == 2);

@@ -14,10 +14,10 @@ namespace {
 
 class OnePlace final : public compiler::PoseLocator {
  public:
-  std::optional<std::string> region_of(std::string_view, const compiler::Pose&) const override {
+  std::optional<std::string> region_of(std::string_view, const compiler::PlanPose&) const override {
     return "here";
   }
-  std::optional<Nearest> nearest(std::string_view, const compiler::Pose&) const override {
+  std::optional<Nearest> nearest(std::string_view, const compiler::PlanPose&) const override {
     return std::nullopt;
   }
 };

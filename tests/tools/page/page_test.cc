@@ -53,7 +53,7 @@ PageData page_named(const std::string& name, std::int64_t samples) {
   page.coverage = {{name, "1", "2"}};
   PageTimeline timeline;
   timeline.trace = timeline.sample = 1;
-  timeline.verdict = SampleVerdict::kDiscrepancy;
+  timeline.verdict = PageVerdict::kDiscrepancy;
   timeline.steps = {{name, "plan.lisp:2", "failed", name, 1.0}};
   timeline.rows = {{name, "11", "10", TimelineRow::Role::kFirst, true},
                    {name + "2", "00", "00", TimelineRow::Role::kAgrees, false}};
@@ -65,7 +65,7 @@ PageData page_named(const std::string& name, std::int64_t samples) {
     PageSample sample;
     sample.trace = 1;
     sample.sample = i;
-    sample.verdict = i == 1 ? SampleVerdict::kDiscrepancy : SampleVerdict::kClean;
+    sample.verdict = i == 1 ? PageVerdict::kDiscrepancy : PageVerdict::kClean;
     sample.cause = i == 1 ? name : "";
     const auto at = static_cast<float>(i) / 100.0F;
     sample.start = {static_cast<double>(i), 1.0 / static_cast<double>(i)};
@@ -161,8 +161,8 @@ TEST_CASE("motion brings its scripts, and nothing in it is markup") {
                            std::string(1 << 20, 'x')}) {
     CAPTURE(name.substr(0, 60));
     auto page = page_named("plain", 3);
-    page.motion = {{1, 1, SampleVerdict::kDiscrepancy, name, 1, recording_named(name)},
-                   {1, 2, SampleVerdict::kClean, name, {}, recording_named(name)}};
+    page.motion = {{1, 1, PageVerdict::kDiscrepancy, name, 1, recording_named(name)},
+                   {1, 2, PageVerdict::kClean, name, {}, recording_named(name)}};
     const auto text = run_page(page);
     const auto shown = check_html(text);
     for (const auto& fault : shown.faults) FAIL_CHECK(fault);
@@ -228,7 +228,7 @@ PageData executions(std::int64_t samples) {
   for (auto& sample : page.samples) {
     const bool chosen = sample.sample % 2 == 0;
     sample.origin = chosen ? SampleOrigin::kChosen : SampleOrigin::kDrawn;
-    sample.verdict = chosen ? SampleVerdict::kDiscrepancy : SampleVerdict::kClean;
+    sample.verdict = chosen ? PageVerdict::kDiscrepancy : PageVerdict::kClean;
   }
   return page;
 }
@@ -247,7 +247,7 @@ TEST_CASE("confidence is that of the runs whose starts were drawn") {
   CHECK(shown.find("Go(r1), Go(r2): too-far") != std::string::npos);
   // With failures the certified level is another one, and that one is shown.
   for (auto& sample : page.samples) {
-    if (sample.sample < 5) sample.verdict = SampleVerdict::kDiscrepancy;
+    if (sample.sample < 5) sample.verdict = PageVerdict::kDiscrepancy;
   }
   page.traces.front().certified_confidence = 0.98;
   page.traces.front().certified_epsilon = harness::mixture_upper(2, 30, 0.99);
@@ -256,7 +256,7 @@ TEST_CASE("confidence is that of the runs whose starts were drawn") {
         std::string::npos);
   CHECK(failing.find("Certified with 98 % confidence") != std::string::npos);
   // An execution that did not end: nothing is claimed, and no curve says otherwise.
-  page.samples[10].verdict = SampleVerdict::kClean;
+  page.samples[10].verdict = PageVerdict::kClean;
   page.samples[10].unfinished = true;
   const auto unfinished = check_html(run_page(page)).text;
   CHECK(unfinished.find("Nothing is claimed: an execution did not end") != std::string::npos);
@@ -264,7 +264,7 @@ TEST_CASE("confidence is that of the runs whose starts were drawn") {
   CHECK(unfinished.find("did not end") != std::string::npos);
   // Nor where not every execution was judged.
   page.samples[10].unfinished = false;
-  page.samples[12].verdict = SampleVerdict::kNotJudged;
+  page.samples[12].verdict = PageVerdict::kNotJudged;
   const auto open = check_html(run_page(page)).text;
   CHECK(open.find("1 are not judged one by one, so there is no curve") != std::string::npos);
   CHECK(open.find("stop after") == std::string::npos);

@@ -112,8 +112,8 @@ TEST_CASE("a switched condition about things of a subsort leaves other things al
     const auto second = compile_text(b, 1, context, why);
     REQUIRE(second);
     const auto difference = runtime::compare_traces(*first, *second, {});
-    CHECK(difference.lost.answer == runtime::Answer::kNone);
-    CHECK(difference.gained.answer == runtime::Answer::kNone);
+    CHECK(difference.lost.answer == runtime::DifferenceAnswer::kNone);
+    CHECK(difference.gained.answer == runtime::DifferenceAnswer::kNone);
   };
   same(switched(guarded, edits.size(), {}), kSubsort);
   for (std::size_t i = 0; i < edits.size(); ++i) {
@@ -164,8 +164,8 @@ TEST_CASE("every edit of a model, switched on and written") {
     const auto second = compile_text(b, 2, context, why);
     REQUIRE(second);
     const auto difference = runtime::compare_traces(*first, *second, {});
-    CHECK(difference.lost.answer == runtime::Answer::kNone);
-    CHECK(difference.gained.answer == runtime::Answer::kNone);
+    CHECK(difference.lost.answer == runtime::DifferenceAnswer::kNone);
+    CHECK(difference.gained.answer == runtime::DifferenceAnswer::kNone);
   };
   same(switched(guarded, edits.size(), {}), kModel);
   std::set<Edit::Kind> kinds;
