@@ -53,9 +53,7 @@ std::optional<TemporalEncoder::Values> TemporalEncoder::fulfilled(Number part) {
     }
     Values out;
     for (std::size_t n = 0; n < size; ++n) {
-      std::vector<Value> parts;
-      for (const auto& child : children) parts.push_back(child[n]);
-      out.push_back(junction(part, parts));
+      out.push_back(junction(part, [&](std::size_t i) { return children[i][n]; }));
     }
     return out;
   }
@@ -263,11 +261,8 @@ TemporalEncoder::Value TemporalEncoder::past(Number number, Timepoint t,
     case Kind::kAnd:
     case Kind::kOr:
     case Kind::kAll:
-    case Kind::kAny: {
-      std::vector<Value> parts;
-      for (std::size_t i = 0; i < node.children.size(); ++i) parts.push_back(child(i));
-      return junction(number, parts);
-    }
+    case Kind::kAny:
+      return junction(number, child);
     case Kind::kLeaf:
     case Kind::kAlways:
     case Kind::kEventually:
@@ -280,15 +275,16 @@ TemporalEncoder::Value TemporalEncoder::past(Number number, Timepoint t,
   return std::nullopt;
 }
 
-TemporalEncoder::Value TemporalEncoder::junction(Number number,
-                                                 const std::vector<Value>& parts) const {
+TemporalEncoder::Value TemporalEncoder::junction(
+    Number number, const std::function<Value(std::size_t)>& child) const {
   const auto kind = tree_[number].kind;
+  const auto parts = tree_[number].children.size();
   std::vector<FormulaId> there;
-  for (const auto& part : parts) {
-    if (part) there.push_back(*part);
+  for (std::size_t i = 0; i < parts; ++i) {
+    if (const auto part = child(i)) there.push_back(*part);
   }
   const bool quantified = kind == Kind::kAll || kind == Kind::kAny;
-  if (there.size() < parts.size() && (!quantified || there.empty())) return std::nullopt;
+  if (there.size() < parts && (!quantified || there.empty())) return std::nullopt;
   return kind == Kind::kAnd || kind == Kind::kAll ? formulas_.conjunction(std::move(there))
                                                   : formulas_.disjunction(std::move(there));
 }
@@ -354,11 +350,8 @@ TemporalEncoder::Value TemporalEncoder::ending(Number number, Timepoint t, const
     case Kind::kAnd:
     case Kind::kOr:
     case Kind::kAll:
-    case Kind::kAny: {
-      std::vector<Value> parts;
-      for (std::size_t i = 0; i < node.children.size(); ++i) parts.push_back(child(i));
-      return junction(number, parts);
-    }
+    case Kind::kAny:
+      return junction(number, child);
     case Kind::kLeaf:
     case Kind::kHistorically:
     case Kind::kOnce:

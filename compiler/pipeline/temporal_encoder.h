@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -65,7 +66,7 @@ class TemporalEncoder {
   Value going_on(Number number, Timepoint t, const View& view);
   FormulaId complete(Timepoint t, const View& view) const;
   Value any(Number number, Timepoint t, const View& view);
-  Value junction(Number number, const std::vector<Value>& parts) const;
+  Value junction(Number number, const std::function<Value(std::size_t)>& child) const;
   Value named(Value value);
 
   const StateConstraint& formula_;

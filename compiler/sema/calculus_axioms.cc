@@ -143,52 +143,23 @@ class ShapeMaker {
   }
 
   std::optional<Part> binary(const Node& node, bool negated) const {
-    switch (node.op) {
-      case Operator::kAnd:
-      case Operator::kOr: {
-        std::vector<std::pair<NodeId, bool>> children;
-        for (std::uint32_t i = 0; i < node.child_count; ++i) {
-          children.emplace_back(ast_.child(node, i), negated);
-        }
-        return junction((node.op == Operator::kAnd) != negated, children);
+    if (is_comparison(node.op)) return comparison(node, negated);
+    if (node.op == Operator::kAnd || node.op == Operator::kOr) {
+      std::vector<std::pair<NodeId, bool>> children;
+      for (std::uint32_t i = 0; i < node.child_count; ++i) {
+        children.emplace_back(ast_.child(node, i), negated);
       }
-      case Operator::kImplies:
-        return junction(negated, {{ast_.child(node, 0), !negated}, {ast_.child(node, 1), negated}});
-      case Operator::kIff: {
-        const auto a = ast_.child(node, 0), b = ast_.child(node, 1);
-        auto forth = junction(false, {{a, !negated}, {b, false}});
-        auto back = junction(false, {{a, negated}, {b, true}});
-        if (!forth || !back) return std::nullopt;
-        return joined(true, {*std::move(forth), *std::move(back)});
-      }
-      case Operator::kEqual:
-      case Operator::kNotEqual:
-      case Operator::kLess:
-      case Operator::kLessEqual:
-      case Operator::kGreaterEqual:
-      case Operator::kGreater:
-        return comparison(node, negated);
-      case Operator::kAdd:
-      case Operator::kSubtract:
-      case Operator::kMultiply:
-      case Operator::kDivide:
-      case Operator::kPower:
-      case Operator::kModulo:
-      case Operator::kNot:
-      case Operator::kNegate:
-      case Operator::kPlus:
-      case Operator::kAlways:
-      case Operator::kEventually:
-      case Operator::kNext:
-      case Operator::kWeakNext:
-      case Operator::kHistorically:
-      case Operator::kOnce:
-      case Operator::kPreviously:
-      case Operator::kUntil:
-      case Operator::kSince:
-        return std::nullopt;
+      return junction((node.op == Operator::kAnd) != negated, children);
     }
-    return std::nullopt;
+    if (node.op == Operator::kImplies) {
+      return junction(negated, {{ast_.child(node, 0), !negated}, {ast_.child(node, 1), negated}});
+    }
+    if (node.op != Operator::kIff) return std::nullopt;
+    const auto a = ast_.child(node, 0), b = ast_.child(node, 1);
+    auto forth = junction(false, {{a, !negated}, {b, false}});
+    auto back = junction(false, {{a, negated}, {b, true}});
+    if (!forth || !back) return std::nullopt;
+    return joined(true, {*std::move(forth), *std::move(back)});
   }
 
   std::optional<Part> junction(bool conjunction,

@@ -10,42 +10,6 @@ namespace parallax::compiler {
 
 namespace {
 
-bool is_comparison(Operator op) {
-  switch (op) {
-    case Operator::kEqual:
-    case Operator::kNotEqual:
-    case Operator::kLess:
-    case Operator::kLessEqual:
-    case Operator::kGreaterEqual:
-    case Operator::kGreater:
-      return true;
-    case Operator::kImplies:
-    case Operator::kIff:
-    case Operator::kOr:
-    case Operator::kAnd:
-    case Operator::kAdd:
-    case Operator::kSubtract:
-    case Operator::kMultiply:
-    case Operator::kDivide:
-    case Operator::kPower:
-    case Operator::kModulo:
-    case Operator::kNot:
-    case Operator::kNegate:
-    case Operator::kPlus:
-    case Operator::kAlways:
-    case Operator::kEventually:
-    case Operator::kNext:
-    case Operator::kWeakNext:
-    case Operator::kHistorically:
-    case Operator::kOnce:
-    case Operator::kPreviously:
-    case Operator::kUntil:
-    case Operator::kSince:
-      return false;
-  }
-  return false;
-}
-
 bool is_connective(Operator op) {
   return op == Operator::kImplies || op == Operator::kIff || op == Operator::kOr ||
          op == Operator::kAnd || is_temporal(op);

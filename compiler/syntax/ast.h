@@ -60,6 +60,9 @@ enum class Operator : std::uint8_t {
   kSince,
 };
 
+constexpr bool is_comparison(Operator op) {
+  return op >= Operator::kEqual && op <= Operator::kGreater;
+}
 constexpr bool is_temporal(Operator op) { return op >= Operator::kAlways; }
 constexpr bool is_binary_temporal(Operator op) { return op >= Operator::kUntil; }
 /// The temporal operator with this name: `always`.

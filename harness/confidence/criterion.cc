@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 
@@ -33,12 +32,59 @@ std::string rejected_text(const Tally& tally) {
       tally.rejected(), drawn, percent_about(share));
 }
 
-/// Has a run given a discrepancy? No criterion goes on after that.
-bool is_refuted(const Tally& tally, Decision& decision) {
-  if (tally.mismatch() == 0) return false;
-  decision.why = "a run gave a discrepancy";
-  return true;
-}
+/// The criterion that a spec describes.
+class SpecCriterion final : public ConfidenceCriterion {
+ public:
+  explicit SpecCriterion(const CriterionSpec& spec)
+      : spec_(spec),
+        level_(spec.trace_level()),
+        planned_(spec.kind == CriterionKind::kAnytime ? 0 : planned_runs(spec)) {}
+
+  CriterionKind kind() const override { return spec_.kind; }
+
+  Decision decide(const Tally& tally) const override {
+    Decision decision;
+    const bool looks_once = spec_.kind == CriterionKind::kClopperPearson;
+    if (looks_once) decision.runs_needed = planned_;
+    if (tally.mismatch() > 0) {
+      decision.why = "a run gave a discrepancy";
+      return decision;
+    }
+    if (spec_.kind == CriterionKind::kPaper) return by_paper(tally);
+    // All-clean runs have their own bound, which is shorter but does not survive a failure.
+    const bool all_clean = spec_.kind == CriterionKind::kCleanRuns && tally.lost() == 0;
+    const auto needed = all_clean || looks_once
+                            ? planned_
+                            : mixture_runs_needed(tally.lost(), level_, spec_.epsilon);
+    decision.runs_needed = needed;
+    decision.stop = looks_once
+                        ? tally.runs() == needed &&
+                              clopper_pearson_upper(tally.lost(), needed, level_) <= spec_.epsilon
+                        : tally.runs() >= needed;
+    decision.why = fmt::format("{} of {} runs{}", tally.runs(), needed,
+                               all_clean ? "" : fmt::format(", {} lost", tally.lost()));
+    return decision;
+  }
+
+ private:
+  Decision by_paper(const Tally& tally) const {
+    Decision decision;
+    if (tally.lost() > 0) {
+      // The rule has no place for a run without a result; leaving it out would favour the model.
+      decision.why = "a run was lost";
+      return decision;
+    }
+    decision.paper = paper_rule(tally, spec_.paper, spec_.confidence_level);
+    decision.stop = decision.paper->stop;
+    decision.why =
+        decision.stop ? "every final interval lies in its cell" : decision.paper->why_not;
+    return decision;
+  }
+
+  CriterionSpec spec_;
+  double level_;
+  std::int64_t planned_;  // kAnytime: 0
+};
 
 }  // namespace
 
@@ -72,72 +118,6 @@ CertifiedBound certified_bound(const Tally& tally, double confidence_level, doub
           mixture_upper(failures, tally.runs(), own)};
 }
 
-CleanRunsCriterion::CleanRunsCriterion(double confidence_level, double epsilon)
-    : confidence_level_(confidence_level),
-      epsilon_(epsilon),
-      runs_needed_(harness::runs_needed(confidence_level, epsilon)) {}
-
-Decision CleanRunsCriterion::decide(const Tally& tally) const {
-  Decision decision;
-  if (is_refuted(tally, decision)) return decision;
-  // All-clean runs have their own bound, which is shorter but does not survive a failure.
-  const bool all_clean = tally.lost() == 0;
-  const std::int64_t needed =
-      all_clean ? runs_needed_ : mixture_runs_needed(tally.lost(), confidence_level_, epsilon_);
-  decision.runs_needed = needed;
-  decision.stop = tally.runs() >= needed;
-  decision.why = fmt::format("{} of {} runs{}", tally.runs(), needed,
-                             all_clean ? "" : fmt::format(", {} lost", tally.lost()));
-  return decision;
-}
-
-PaperCriterion::PaperCriterion(double confidence_level, PaperRuleSpec spec)
-    : confidence_level_(confidence_level), spec_(std::move(spec)) {
-  PARALLAX_REQUIRE(confidence_level > 0.0 && confidence_level < 1.0, "a confidence in (0, 1)");
-}
-
-Decision PaperCriterion::decide(const Tally& tally) const {
-  Decision decision;
-  if (is_refuted(tally, decision)) return decision;
-  if (tally.lost() > 0) {
-    // The rule has no place for a run without a result; leaving it out would favour the model.
-    decision.why = "a run was lost";
-    return decision;
-  }
-  decision.paper = paper_rule(tally, spec_, confidence_level_);
-  decision.stop = decision.paper->stop;
-  decision.why = decision.stop ? "every final interval lies in its cell" : decision.paper->why_not;
-  return decision;
-}
-
-AnytimeCriterion::AnytimeCriterion(double confidence_level, double epsilon)
-    : confidence_level_(confidence_level), epsilon_(epsilon) {}
-
-Decision AnytimeCriterion::decide(const Tally& tally) const {
-  Decision decision;
-  if (is_refuted(tally, decision)) return decision;
-  const auto needed = mixture_runs_needed(tally.lost(), confidence_level_, epsilon_);
-  decision.runs_needed = needed;
-  decision.stop = tally.runs() >= needed;
-  decision.why = fmt::format("{} of {} runs, {} lost", tally.runs(), needed, tally.lost());
-  return decision;
-}
-
-FixedRunsCriterion::FixedRunsCriterion(double confidence_level, double epsilon, std::int64_t runs)
-    : confidence_level_(confidence_level), epsilon_(epsilon), runs_(runs) {
-  PARALLAX_REQUIRE(runs > 0, "a number of runs");
-}
-
-Decision FixedRunsCriterion::decide(const Tally& tally) const {
-  Decision decision;
-  decision.runs_needed = runs_;
-  if (is_refuted(tally, decision)) return decision;
-  decision.stop = tally.runs() == runs_ &&
-                  clopper_pearson_upper(tally.lost(), runs_, confidence_level_) <= epsilon_;
-  decision.why = fmt::format("{} of {} runs, {} lost", tally.runs(), runs_, tally.lost());
-  return decision;
-}
-
 CertifiedBound stated_bound(const Tally& tally, const CriterionSpec& spec) {
   const double level = spec.confidence_level, own = spec.trace_level();
   const std::int64_t failures = tally.lost() + tally.mismatch();
@@ -166,19 +146,9 @@ std::int64_t planned_runs(const CriterionSpec& spec) {
 }
 
 std::unique_ptr<ConfidenceCriterion> make_criterion(const CriterionSpec& spec) {
-  switch (spec.kind) {
-    case CriterionKind::kCleanRuns:
-      return std::make_unique<CleanRunsCriterion>(spec.trace_level(), spec.epsilon);
-    case CriterionKind::kPaper:
-      return std::make_unique<PaperCriterion>(spec.confidence_level, spec.paper);
-    case CriterionKind::kAnytime:
-      return std::make_unique<AnytimeCriterion>(spec.trace_level(), spec.epsilon);
-    case CriterionKind::kClopperPearson:
-      return std::make_unique<FixedRunsCriterion>(spec.trace_level(), spec.epsilon,
-                                                  planned_runs(spec));
-  }
-  PARALLAX_REQUIRE(false, "a known kind of criterion");
-  return nullptr;
+  PARALLAX_REQUIRE(spec.confidence_level > 0.0 && spec.confidence_level < 1.0,
+                   "a confidence in (0, 1)");
+  return std::make_unique<SpecCriterion>(spec);
 }
 
 PaperRuleSpec paper_literal() { return {}; }

@@ -35,61 +35,15 @@ class ConfidenceCriterion {
 };
 
 /// `confidence_level` and `epsilon` of the spec in (0, 1). Of one trace: by the error it may spend.
+/// None goes on after a mismatch; lost runs count as failures.
+/// clean-runs: stop after ceil(ln(1-C) / ln(1-eps)) runs if all were clean, after lost ones when
+/// the mixture bound reaches eps.
+/// anytime: stop when the mixture bound (Ville 1939; log_mixture_wealth) reaches eps, with any
+/// number of lost runs. One procedure with one bound, so its level stays C after a loss.
+/// clopper-pearson: make a number of runs that is fixed in advance and look once: stop if the bound
+/// of Clopper and Pearson (1934) is at most eps.
+/// paper: stop when the paper's rule holds for the clean runs; never after a lost run.
 std::unique_ptr<ConfidenceCriterion> make_criterion(const CriterionSpec& spec);
-
-/// Stop after ceil(ln(1-C) / ln(1-eps)) runs if all were clean. After lost runs, which count as
-/// failures, stop when the mixture bound reaches eps. Never after a mismatch.
-class CleanRunsCriterion final : public ConfidenceCriterion {
- public:
-  CleanRunsCriterion(double confidence_level, double epsilon);
-  Decision decide(const Tally& tally) const override;
-  CriterionKind kind() const override { return CriterionKind::kCleanRuns; }
-
- private:
-  double confidence_level_;
-  double epsilon_;
-  std::int64_t runs_needed_;
-};
-
-/// Stop when the mixture bound (Ville 1939; log_mixture_wealth) reaches eps, with any number of
-/// lost runs. One procedure with one bound, so its level stays C after a loss. Never after a
-/// mismatch.
-class AnytimeCriterion final : public ConfidenceCriterion {
- public:
-  AnytimeCriterion(double confidence_level, double epsilon);
-  Decision decide(const Tally& tally) const override;
-  CriterionKind kind() const override { return CriterionKind::kAnytime; }
-
- private:
-  double confidence_level_;
-  double epsilon_;
-};
-
-/// Make a number of runs that is fixed in advance and look once: stop if the bound of Clopper and
-/// Pearson (1934), lost runs counted as failures, is at most eps. Never after a mismatch.
-class FixedRunsCriterion final : public ConfidenceCriterion {
- public:
-  FixedRunsCriterion(double confidence_level, double epsilon, std::int64_t runs);
-  Decision decide(const Tally& tally) const override;
-  CriterionKind kind() const override { return CriterionKind::kClopperPearson; }
-
- private:
-  double confidence_level_;
-  double epsilon_;
-  std::int64_t runs_;
-};
-
-/// Stop when the paper's rule holds for the clean runs. Never after a mismatch or a lost run.
-class PaperCriterion final : public ConfidenceCriterion {
- public:
-  PaperCriterion(double confidence_level, PaperRuleSpec spec);
-  Decision decide(const Tally& tally) const override;
-  CriterionKind kind() const override { return CriterionKind::kPaper; }
-
- private:
-  double confidence_level_;
-  PaperRuleSpec spec_;
-};
 
 /// The bound that holds beside any criterion. Without failures: bound_after(clean) at C. With
 /// failures (lost runs and mismatches): mixture_upper at C, stated with 1 - 2(1-C), as a procedure

@@ -10,7 +10,7 @@ namespace parallax::harness {
 /// items is fixed before the first run, and the runs are independent. The bounds may be read after
 /// every run, and any observation may end the runs.
 ///
-/// Each item has the bound of CleanRunsCriterion with the share (1-C) / items of the error. The
+/// Each item has the bound of `clean-runs` with the share (1-C) / items of the error. The
 /// bound of an item that a run shows with probability p is false at some time only if the first
 /// n(p) runs do not show it, n(p) being the first count whose bound is below p, which has
 /// probability at most (1-C) / items. So all bounds hold together, at all times, with probability C

@@ -112,11 +112,8 @@ void read_from_plan(const YamlNode& node, const ControllerSpec* controller, Acti
 
 std::optional<ActionBinding> read_action(const YamlEntry& entry, bool built_in,
                                          base::DiagnosticSink& sink) {
-  const auto pattern = parse_pattern(entry.key);
-  if (!pattern) {
-    sink.error(codes::kBadPattern, entry.key_range, entry.key);
-    return std::nullopt;
-  }
+  const auto pattern = read_pattern(entry, sink);
+  if (!pattern) return std::nullopt;
   ActionBinding action;
   action.event = pattern->symbol;
   action.arity = pattern->parameters.size();

@@ -247,11 +247,8 @@ BorderBinding read_border(YamlFields& fields, const SymbolPattern& pattern) {
 }
 
 std::optional<FluentBinding> read_binding(const YamlEntry& entry, base::DiagnosticSink& sink) {
-  const auto pattern = parse_pattern(entry.key);
-  if (!pattern) {
-    sink.error(codes::kBadPattern, entry.key_range, entry.key);
-    return std::nullopt;
-  }
+  const auto pattern = read_pattern(entry, sink);
+  if (!pattern) return std::nullopt;
   FluentBinding binding;
   binding.fluent = pattern->symbol;
   binding.arity = pattern->parameters.size();
@@ -311,8 +308,6 @@ void refuse_repeated(Bindings& bindings, Name name, base::DiagnosticSink& sink) 
   }
 }
 
-}  // namespace
-
 std::optional<SymbolPattern> parse_pattern(std::string_view text) {
   SymbolPattern pattern;
   const auto open = text.find('(');
@@ -334,6 +329,14 @@ std::optional<SymbolPattern> parse_pattern(std::string_view text) {
     rest = trimmed(rest.substr(comma + 1));
     if (rest.empty()) return std::nullopt;  // a comma at the end
   }
+  return pattern;
+}
+
+}  // namespace
+
+std::optional<SymbolPattern> read_pattern(const YamlEntry& entry, base::DiagnosticSink& sink) {
+  auto pattern = parse_pattern(entry.key);
+  if (!pattern) sink.error(codes::kBadPattern, entry.key_range, entry.key);
   return pattern;
 }
 

@@ -13,6 +13,7 @@
 #include "harness/law/sampling_law.h"
 #include "harness/region/state_mapping.h"
 #include "harness/search/strategy.h"
+#include "harness/simulator/process_limits.h"
 #include "harness/world/world_spec.h"
 
 namespace parallax::harness {
@@ -48,21 +49,13 @@ struct ActionBinding {
   std::map<std::string, base::SourceRange> argument_sources;  // of the values in `arguments`
 };
 
-/// The simulator's command and how long it may take on the clock of the wall. An act may take
-/// `act_timeout_s` if that is positive, else 5 s + its simulated limit / min_real_time_factor.
-struct SimulatorSpec {
+/// The simulator, with the limits of its process.
+struct SimulatorSpec : ProcessLimits {
   std::vector<std::string> command;      // of an external one
   std::vector<LocatedText> models;       // of a world that is a model
   EngineKind engine = EngineKind::kOde;  // of the built-in one
   /// The built-in engine and its robots, which the world of the scenario is for.
   bool is_built_in() const { return command.empty() && models.empty(); }
-  double hello_timeout_s = 60.0;
-  double reset_timeout_s = 10.0;
-  double act_timeout_s = 0.0;
-  double observe_timeout_s = 2.0;
-  double close_timeout_s = 2.0;
-  double min_real_time_factor = 1.0;
-  std::int64_t memory_mb = 4096;   // of all its processes; 0: no bound
   std::int64_t recycle_after = 0;  // resets after which the process is replaced; 0: never
   base::SourceRange source;
 };

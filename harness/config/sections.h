@@ -147,7 +147,8 @@ struct SymbolPattern {
   std::string symbol;
   std::vector<std::string> parameters;
 };
-std::optional<SymbolPattern> parse_pattern(std::string_view text);
+/// None, and kBadPattern: the key is no such thing.
+std::optional<SymbolPattern> read_pattern(const YamlEntry& entry, base::DiagnosticSink& sink);
 
 /// "{region}.x" -> "{0}.x"; reports a name in braces that is no parameter of the pattern.
 std::string with_positions(const std::string& text, const SymbolPattern& pattern,

@@ -107,6 +107,20 @@ MjcfFrame frame_at(const mjtNum* places, const mjtNum* turns, int i) {
   return {vector_at(places, i), Eigen::Map<const Eigen::Vector4d>(turns + 4 * i)};
 }
 
+// MjcfJointType and MjcfForm list joints and geoms as the engine does.
+static_assert(mjJNT_FREE == static_cast<int>(MjcfJointType::kFree) &&
+              mjJNT_BALL == static_cast<int>(MjcfJointType::kBall) &&
+              mjJNT_SLIDE == static_cast<int>(MjcfJointType::kSlide) &&
+              mjJNT_HINGE == static_cast<int>(MjcfJointType::kHinge));
+static_assert(mjGEOM_PLANE == static_cast<int>(MjcfForm::kPlane) &&
+              mjGEOM_HFIELD == static_cast<int>(MjcfForm::kHeightField) &&
+              mjGEOM_SPHERE == static_cast<int>(MjcfForm::kSphere) &&
+              mjGEOM_CAPSULE == static_cast<int>(MjcfForm::kCapsule) &&
+              mjGEOM_ELLIPSOID == static_cast<int>(MjcfForm::kEllipsoid) &&
+              mjGEOM_CYLINDER == static_cast<int>(MjcfForm::kCylinder) &&
+              mjGEOM_BOX == static_cast<int>(MjcfForm::kBox) &&
+              mjGEOM_MESH == static_cast<int>(MjcfForm::kMesh) && mjNGEOMTYPES == mjGEOM_MESH + 1);
+
 /// Bodies, joints and geoms of a model.
 class Translator {
  public:
@@ -147,19 +161,7 @@ class Translator {
     MjcfJoint& joint = out_.joints.emplace_back();
     joint.name = name_at(model_.name_jntadr, i);
     joint.body = number(model_.jnt_bodyid[i]);
-    switch (model_.jnt_type[i]) {
-      case mjJNT_FREE:
-        joint.type = MjcfJointType::kFree;
-        break;
-      case mjJNT_BALL:
-        joint.type = MjcfJointType::kBall;
-        break;
-      case mjJNT_SLIDE:
-        joint.type = MjcfJointType::kSlide;
-        break;
-      default:
-        joint.type = MjcfJointType::kHinge;
-    }
+    joint.type = static_cast<MjcfJointType>(model_.jnt_type[i]);
     joint.p_BJ = vector_at(model_.jnt_pos, i);
     joint.axis_B = vector_at(model_.jnt_axis, i);
     joint.is_limited = model_.jnt_limited[i] != 0;
@@ -184,32 +186,11 @@ class Translator {
            !std::equal(impedance, impedance + mjNIMP, usual_impedance);
   }
 
-  static MjcfForm form_of(int type) {
-    switch (type) {
-      case mjGEOM_PLANE:
-        return MjcfForm::kPlane;
-      case mjGEOM_HFIELD:
-        return MjcfForm::kHeightField;
-      case mjGEOM_SPHERE:
-        return MjcfForm::kSphere;
-      case mjGEOM_CAPSULE:
-        return MjcfForm::kCapsule;
-      case mjGEOM_ELLIPSOID:
-        return MjcfForm::kEllipsoid;
-      case mjGEOM_CYLINDER:
-        return MjcfForm::kCylinder;
-      case mjGEOM_BOX:
-        return MjcfForm::kBox;
-      default:
-        return MjcfForm::kMesh;
-    }
-  }
-
   void add_geom(int i) {
     MjcfGeom& geom = out_.geoms.emplace_back();
     geom.name = name_at(model_.name_geomadr, i);
     geom.body = number(model_.geom_bodyid[i]);
-    geom.form = form_of(model_.geom_type[i]);
+    geom.form = static_cast<MjcfForm>(model_.geom_type[i]);
     geom.size = vector_at(model_.geom_size, i);
     geom.frame = frame_at(model_.geom_pos, model_.geom_quat, i);
     geom.mesh = number(std::max(0, model_.geom_dataid[i]));

@@ -15,6 +15,7 @@
 
 #include "compiler/base/descriptor.h"
 #include "harness/simulator/pose_intake.h"
+#include "harness/simulator/process_limits.h"
 #include "harness/simulator/protocol.h"
 #include "harness/simulator/simulator.h"
 
@@ -76,15 +77,8 @@ class ChildProcess {
   std::string ending_;
 };
 
-struct ProcessOptions {
-  std::vector<std::string> command;  // looked up in PATH; no shell
-  double hello_timeout_s = 60.0;
-  double reset_timeout_s = 10.0;
-  double act_timeout_s = 0.0;  // 0: 5 s + simulated limit / min_real_time_factor
-  double observe_timeout_s = 2.0;
-  double close_timeout_s = 2.0;
-  double min_real_time_factor = 1.0;
-  std::int64_t memory_mb = 4096;            // of all processes of the child's session; 0: no bound
+struct ProcessOptions : ProcessLimits {
+  std::vector<std::string> command;         // looked up in PATH; no shell
   std::int64_t recycle_after = 0;           // resets after which the child is replaced; 0: never
   const std::atomic<bool>* stop = nullptr;  // waiting ends early, as a loss, when it is raised
 };

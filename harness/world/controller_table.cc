@@ -39,6 +39,14 @@ constexpr ArgumentSpec settle(double fallback_s) {
   return {"settle_s", "s", false, fallback_s, false, kSettle, 0.0};
 }
 
+constexpr ArgumentSpec kArm = named("arm", "arm", "which arm");
+constexpr ArgumentSpec kToolSpeed = number("max_speed_m_s", "m/s", 0.25, "of the tool");
+constexpr ArgumentSpec kApproachSpeed =
+    number("approach_speed_m_s", "m/s", 0.15, "on the last stretch");
+constexpr ArgumentSpec kClearance =
+    number("clearance_m", "m", 0.005, "of each pad before it closes");
+constexpr ArgumentSpec kSqueeze = number("effort_n", "n", 60.0, "squeezing force");
+
 constexpr std::array kGoing = {
     ArgumentSpec{"target.x", "m", true, 0.0, false, "where robot.x is to be"},
     any_number("target.y", "m", kUnusedPose),
@@ -112,14 +120,14 @@ constexpr std::array kDetect = {
 };
 
 constexpr std::array kPickUp = {
-    named("arm", "arm", "which arm"),
+    kArm,
     named("object", "graspable", "the body to pick up"),
     ArgumentSpec{"effort_n", "n", false, kNoFallback, true,
                  "squeezing force; unless given, that of the grasp"},
     number("clearance_m", "m", 0.015, "of each pad before it closes; less where it opens less"),
     number("standoff_m", "m", 0.10, "of the last, straight stretch"),
-    number("max_speed_m_s", "m/s", 0.25, "of the tool"),
-    number("approach_speed_m_s", "m/s", 0.15, "on the last stretch"),
+    kToolSpeed,
+    kApproachSpeed,
     number("hold_s", "s", 0.4, "squeezing before the lift"),
     number("lift_m", "m", 0.12, "height of the lift"),
     number("lift_speed_m_s", "m/s", 0.10, "of the lift"),
@@ -128,7 +136,7 @@ constexpr std::array kPickUp = {
 };
 
 constexpr std::array kPlace = {
-    named("arm", "arm", "which arm"),
+    kArm,
     named("object", "body", "what must be held; unless given, whatever is", false),
     named("place", "place", "where the lowest point is to be", false),
     any_number("target.x", "m", "laid over the place"),
@@ -136,20 +144,20 @@ constexpr std::array kPlace = {
     any_number("target.z", "m", "laid over the place"),
     any_number("target.yaw", "rad", "accepted and unused"),
     number("hover_m", "m", 0.12, "above the place before and after"),
-    number("max_speed_m_s", "m/s", 0.25, "of the tool"),
+    kToolSpeed,
     number("lower_speed_m_s", "m/s", 0.10, "of the loaded tool going down"),
     number("goal_tolerance_m", "m", 0.05, "farther beside the place it has failed"),
     settle(0.5),
 };
 
 constexpr std::array kOpenDrawer = {
-    named("arm", "arm", "which arm"),
+    kArm,
     named("joint", "drawer", "the slider to move"),
-    number("effort_n", "n", 60.0, "squeezing force"),
-    number("clearance_m", "m", 0.005, "of each pad before it closes"),
+    kSqueeze,
+    kClearance,
     number("standoff_m", "m", 0.20, "of the last, straight stretch"),
-    number("max_speed_m_s", "m/s", 0.25, "of the tool"),
-    number("approach_speed_m_s", "m/s", 0.15, "on the last stretch"),
+    kToolSpeed,
+    kApproachSpeed,
     number("pull_speed_m_s", "m/s", 0.15, "of the drawer"),
     number("hold_s", "s", 0.1, "squeezing before the pull"),
     number("stop_tolerance_m", "m", 0.02, "farther from its stop it has failed"),
@@ -157,23 +165,23 @@ constexpr std::array kOpenDrawer = {
 };
 
 constexpr std::array kCloseDrawer = {
-    named("arm", "arm", "which arm"),
+    kArm,
     named("joint", "drawer", "the slider to move"),
     number("standoff_m", "m", 0.20, "of the stretch before the palm meets the handle"),
-    number("max_speed_m_s", "m/s", 0.25, "of the tool"),
+    kToolSpeed,
     number("pull_speed_m_s", "m/s", 0.15, "of the drawer"),
     number("stop_tolerance_m", "m", 0.02, "farther from its stop it has failed"),
     settle(0.3),
 };
 
 constexpr std::array kMoveDoor = {
-    named("arm", "arm", "which arm"),
+    kArm,
     named("joint", "door", "the hinge to turn"),
-    number("effort_n", "n", 60.0, "squeezing force"),
-    number("clearance_m", "m", 0.005, "of each pad before it closes"),
+    kSqueeze,
+    kClearance,
     number("standoff_m", "m", 0.20, "of the straight stretches to and from the handle"),
-    number("max_speed_m_s", "m/s", 0.25, "of the tool"),
-    number("approach_speed_m_s", "m/s", 0.15, "on the last stretch"),
+    kToolSpeed,
+    kApproachSpeed,
     number("pull_speed_m_s", "m/s", 0.20, "of the hand on its arc"),
     number("hold_s", "s", 0.1, "squeezing before the door is moved"),
     number("stop_tolerance_rad", "rad", 0.05, "farther from its stop it has failed"),
@@ -181,8 +189,8 @@ constexpr std::array kMoveDoor = {
 };
 
 constexpr std::array kPark = {
-    named("arm", "arm", "which arm"),
-    number("max_speed_m_s", "m/s", 0.25, "of the tool"),
+    kArm,
+    kToolSpeed,
     settle(0.2),
 };
 
@@ -193,12 +201,12 @@ constexpr std::array kMoveTorso = {
 };
 
 constexpr std::array kOpenGripper = {
-    named("arm", "arm", "which arm"),
+    kArm,
     settle(0.5),
 };
 
 constexpr std::array kRegrip = {
-    named("arm", "arm", "which arm"),
+    kArm,
     number("effort_n", "n", 40.0, "squeezing force from now on"),
     number("hold_s", "s", 0.3, "squeezing before the end"),
 };

@@ -17,8 +17,7 @@ harness::SimulatorFactory simulator_factory(const ScenarioModel& loaded,
       return std::make_unique<harness::ModelSimulator>(world, &stop);
     };
   }
-  harness::ProcessOptions options;
-  options.command = spec.command;
+  harness::ProcessOptions options{spec, spec.command, spec.recycle_after, &stop};
   if (options.command.empty()) {
     options.command = worker;
     options.command.insert(options.command.end(), {"--scenario-hash", loaded.scenario_hash, "--",
@@ -26,15 +25,6 @@ harness::SimulatorFactory simulator_factory(const ScenarioModel& loaded,
   } else {
     options.command.insert(options.command.begin(), supervisor.begin(), supervisor.end());
   }
-  options.hello_timeout_s = spec.hello_timeout_s;
-  options.reset_timeout_s = spec.reset_timeout_s;
-  options.act_timeout_s = spec.act_timeout_s;
-  options.observe_timeout_s = spec.observe_timeout_s;
-  options.close_timeout_s = spec.close_timeout_s;
-  options.min_real_time_factor = spec.min_real_time_factor;
-  options.memory_mb = spec.memory_mb;
-  options.recycle_after = spec.recycle_after;
-  options.stop = &stop;
   return [options] { return std::make_unique<harness::ProcessSimulator>(options); };
 }
 

@@ -62,16 +62,6 @@ base::Result<harness::TriedAction> tried_action(const std::string& text,
   return action;
 }
 
-void take_limits(const harness::SimulatorSpec& spec, harness::ProcessOptions& process) {
-  process.hello_timeout_s = spec.hello_timeout_s;
-  process.reset_timeout_s = spec.reset_timeout_s;
-  process.act_timeout_s = spec.act_timeout_s;
-  process.observe_timeout_s = spec.observe_timeout_s;
-  process.close_timeout_s = spec.close_timeout_s;
-  process.min_real_time_factor = spec.min_real_time_factor;
-  process.memory_mb = spec.memory_mb;
-}
-
 void bound_all(double limit_s, harness::ProcessOptions& process) {
   if (limit_s <= 0.0) return;
   for (auto* limit : {&process.hello_timeout_s, &process.reset_timeout_s,
@@ -153,7 +143,7 @@ int check_with_scenario(const AdapterCheckOptions& options, harness::Conformance
     sink.error(codes::kNothingToSimulate, base::SourceRange{scenario.source, 0, 0});
     return 0;
   }
-  take_limits(scenario.simulator, check.process);
+  static_cast<harness::ProcessLimits&>(check.process) = scenario.simulator;
   bound_all(options.request_limit_s, check.process);
   if (check.process.command.empty()) check.process.command = scenario.simulator.command;
   if (check.process.command.empty()) {
@@ -240,8 +230,7 @@ Command adapter_check_command() {
               "Longest time of a request, in seconds of wall time")
       .details("Default: as the scenario says, or docs/simulator_protocol.md.")
       .check(FiniteNumber{0.01, 1e5});
-  return {std::move(command),
-          [options](Invocation& invocation) { return run_adapter_check(*options, invocation); }};
+  return command_of(std::move(command), options, run_adapter_check);
 }
 
 }  // namespace parallax::tools

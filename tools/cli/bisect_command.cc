@@ -167,8 +167,7 @@ Command bisect_command() {
       .file({"yaml"});
   command.flag("--first-parent", options->first_parent, "Of merges follow the first parent only");
   add_command_options(command, options->commands, false);
-  return {std::move(command),
-          [options](Invocation& invocation) { return bisect(*options, invocation); }};
+  return command_of(std::move(command), options, bisect);
 }
 
 }  // namespace parallax::tools

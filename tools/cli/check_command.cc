@@ -94,8 +94,7 @@ Command check_command() {
   command.option("--allow", options->allow, "Do not report warnings of this code")
       .list(ListForm::kAsManyAsFollowFromOne);
   command.flag("--no-lint", options->no_lint, "Report no W21xx: what is legal but odd");
-  return {std::move(command),
-          [options](Invocation& invocation) { return check(*options, invocation); }};
+  return command_of(std::move(command), options, check);
 }
 
 }  // namespace parallax::tools

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
@@ -71,6 +72,13 @@ struct Command {
   OptionTable options;
   std::function<int(Invocation&)> run;
 };
+/// A command that runs a function with the options that its table fills.
+template <typename Options, typename Run>
+Command command_of(OptionTable table, std::shared_ptr<Options> options, Run run) {
+  return {std::move(table), [options = std::move(options), run](Invocation& invocation) {
+            return run(*options, invocation);
+          }};
+}
 
 /// Adds the options that every command has.
 void add_common_options(OptionTable& table, CommonOptions& options);

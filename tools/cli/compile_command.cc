@@ -168,8 +168,7 @@ Command compile_command() {
               "What to print: a stage, or the value after a pass; `help` lists them")
       .check(OneOf{stage_names()})
       .show_default();
-  return {std::move(command),
-          [options](Invocation& invocation) { return compile_and_write(*options, invocation); }};
+  return command_of(std::move(command), options, compile_and_write);
 }
 
 }  // namespace parallax::tools

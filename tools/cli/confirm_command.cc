@@ -174,8 +174,7 @@ Command confirm_command() {
       .details("They do not count in --runs.")
       .check(WholeNumber{0, 10'000})
       .show_default();
-  return {std::move(command),
-          [options](Invocation& invocation) { return confirm(*options, invocation); }};
+  return command_of(std::move(command), options, confirm);
 }
 
 Command threshold_command() {
@@ -198,8 +197,7 @@ Command threshold_command() {
               "Look at so many values from end to end, before borders are narrowed down")
       .check(WholeNumber{2, 10'000})
       .show_default();
-  return {std::move(command),
-          [options](Invocation& invocation) { return threshold(*options, invocation); }};
+  return command_of(std::move(command), options, threshold);
 }
 
 }  // namespace parallax::tools

@@ -255,8 +255,7 @@ Command consequences_command() {
   command.option("--limit", options->abduction.limit, "Of --abduce: so many explanations; 0: all")
       .check(NonNegative{})
       .show_default();
-  return {std::move(command),
-          [options](Invocation& invocation) { return run_consequences(*options, invocation); }};
+  return command_of(std::move(command), options, run_consequences);
 }
 
 }  // namespace parallax::tools

@@ -64,8 +64,7 @@ Command coverage_command() {
               "Write an lcov tracefile for genhtml, editors and CI services")
       .details("`-` prints it instead of the text.")
       .file();
-  return {std::move(command),
-          [options](Invocation& invocation) { return cover(*options, invocation); }};
+  return command_of(std::move(command), options, cover);
 }
 
 }  // namespace parallax::tools

@@ -397,8 +397,7 @@ Command diff_command() {
   command.flag("--exit-code", options->exit_code,
                "Accepted for those who know it from git; the exit code always tells");
   add_model_diff_options(command, *options);
-  return {std::move(command),
-          [options](Invocation& invocation) { return run(*options, invocation); }};
+  return command_of(std::move(command), options, run);
 }
 
 }  // namespace parallax::tools

@@ -442,8 +442,7 @@ Command draw_command() {
   command.flag("--no-regions", options->no_regions, "Leave the regions out");
   command.flag("--robot", options->robot,
                "The robot of a file as scenarios include it, with its frames and numbers");
-  return {std::move(command),
-          [options](Invocation& invocation) { return draw(*options, invocation); }};
+  return command_of(std::move(command), options, draw);
 }
 
 }  // namespace parallax::tools

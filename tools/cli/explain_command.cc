@@ -319,8 +319,7 @@ Command explain_command() {
       .check(WholeNumber{1, 256})
       .show_default();
   add_command_options(command, options->commands, false);
-  return {std::move(command),
-          [options](Invocation& invocation) { return explain(*options, invocation); }};
+  return command_of(std::move(command), options, explain);
 }
 
 }  // namespace parallax::tools

@@ -146,8 +146,7 @@ Command export_command() {
       .option("-o,--output", options->output,
               "File to write, -: standard output; default: csv there, mcap in the run folder")
       .file();
-  return {std::move(command),
-          [options](Invocation& invocation) { return export_motion(*options, invocation); }};
+  return command_of(std::move(command), options, export_motion);
 }
 
 }  // namespace parallax::tools

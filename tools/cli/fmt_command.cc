@@ -123,8 +123,7 @@ Command fmt_command() {
   command.flag("--check", options->check,
                "Write nothing; name the files that would change and exit with 1 if any would");
   command.flag("--stdout", options->to_stdout, "Print instead of rewriting");
-  return {std::move(command),
-          [options](Invocation& invocation) { return format(*options, invocation); }};
+  return command_of(std::move(command), options, format);
 }
 
 }  // namespace parallax::tools

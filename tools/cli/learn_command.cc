@@ -116,8 +116,7 @@ Command learn_command() {
       .check(WholeNumber{1, 256})
       .show_default();
   add_command_options(command, options->commands, true);
-  return {std::move(command),
-          [options](Invocation& invocation) { return run_learn(*options, invocation); }};
+  return command_of(std::move(command), options, run_learn);
 }
 
 }  // namespace parallax::tools

@@ -439,8 +439,7 @@ Command ledger_command() {
   command.option("--revision", options->revision,
                  "add: where it was first seen; else what git says of the ledger's folder");
   add_recorded_scenario_option(command, options->scenario);
-  return {std::move(command),
-          [options](Invocation& invocation) { return run(*options, invocation); }};
+  return command_of(std::move(command), options, run);
 }
 
 }  // namespace parallax::tools

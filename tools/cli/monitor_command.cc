@@ -140,8 +140,7 @@ Command monitor_command() {
               "States that may be possible at once; with more the answer is `undecided`")
       .check(WholeNumber{1, 1'000'000})
       .show_default();
-  return {std::move(command),
-          [options](Invocation& invocation) { return monitor(*options, invocation); }};
+  return command_of(std::move(command), options, monitor);
 }
 
 }  // namespace parallax::tools

@@ -88,8 +88,7 @@ Command new_command() {
       .option("--robot", options->robot,
               "line (on rails) or mobile (drives, sees, one arm); default: the one of the world")
       .check(OneOf{{"line", "mobile"}});
-  return {std::move(command),
-          [options](Invocation& invocation) { return make_new(*options, invocation); }};
+  return command_of(std::move(command), options, make_new);
 }
 
 }  // namespace parallax::tools

@@ -294,8 +294,7 @@ Command prove_command() {
   command.option("--seed", options->seed, "Seed of these starts")
       .check(WholeNumber{0, kMaxSeed})
       .show_default();
-  return {std::move(command),
-          [options](Invocation& invocation) { return run_prove(*options, invocation); }};
+  return command_of(std::move(command), options, run_prove);
 }
 
 }  // namespace parallax::tools

@@ -345,8 +345,7 @@ Command rates_command() {
               "(.html)")
       .file();
   add_command_options(command, options->commands, true);
-  return {std::move(command),
-          [options](Invocation& invocation) { return run_rates(*options, invocation); }};
+  return command_of(std::move(command), options, run_rates);
 }
 
 }  // namespace parallax::tools

@@ -79,8 +79,7 @@ Command record_command() {
       .required()
       .program();
   command.option("-o,--output", options->output, "File to write").required().file();
-  return {std::move(command),
-          [options](Invocation& invocation) { return run_record(*options, invocation); }};
+  return command_of(std::move(command), options, run_record);
 }
 
 Command replay_adapter_command() {

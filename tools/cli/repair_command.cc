@@ -218,8 +218,7 @@ Command repair_command() {
       .show_default()
       .needs("--loop");
   add_command_options(command, options->commands, false);
-  return {std::move(command),
-          [options](Invocation& invocation) { return repair(*options, invocation); }};
+  return command_of(std::move(command), options, repair);
 }
 
 }  // namespace parallax::tools

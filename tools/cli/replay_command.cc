@@ -93,8 +93,7 @@ Command replay_command() {
                "Write what moves into the run folder, for `report` and `export`");
   add_recorded_scenario_option(command, options->run.scenario);
   add_command_options(command, options->commands, false);
-  return {std::move(command),
-          [options](Invocation& invocation) { return replay(*options, invocation); }};
+  return command_of(std::move(command), options, replay);
 }
 
 }  // namespace parallax::tools

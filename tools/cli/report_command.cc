@@ -257,8 +257,7 @@ Command report_command() {
       "--watch", options->watch,
       "While the run goes on: write a page that loads itself again, until the run is over");
   add_recorded_scenario_option(command, options->scenario);
-  return {std::move(command),
-          [options](Invocation& invocation) { return report(*options, invocation); }};
+  return command_of(std::move(command), options, report);
 }
 
 }  // namespace parallax::tools

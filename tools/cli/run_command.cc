@@ -418,8 +418,7 @@ Command run_command() {
   command.heading("Second opinion");
   add_opinion_options(command, options->opinion);
   add_command_options(command, options->commands, true);
-  return {std::move(command),
-          [options](Invocation& invocation) { return run_scenario(*options, invocation); }};
+  return command_of(std::move(command), options, run_scenario);
 }
 
 }  // namespace parallax::tools

@@ -367,8 +367,7 @@ Command verify_command() {
       .file({"yaml"});
   command.flag("--check", options->check,
                "Evaluate the model on the trace by independent means; exit 5 if it differs");
-  return {std::move(command),
-          [options](Invocation& invocation) { return verify(*options, invocation); }};
+  return command_of(std::move(command), options, verify);
 }
 
 }  // namespace parallax::tools

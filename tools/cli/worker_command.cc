@@ -113,8 +113,7 @@ Command worker_command() {
       .option("--beat", options->beat_s, "Of --elsewhere: seconds between signs of life; 0: none")
       .check(FiniteNumber{0.0, 86'400.0});
   add_command_options(command, options->commands, false);
-  return {std::move(command),
-          [options](Invocation& invocation) { return serve_scenario(*options, invocation); }};
+  return command_of(std::move(command), options, serve_scenario);
 }
 
 }  // namespace parallax::tools
