@@ -5,11 +5,6 @@
 namespace parallax::compiler {
 namespace {
 
-constexpr AtomKind kAllKinds[] = {AtomKind::kHoldsAt,   AtomKind::kHappens,   AtomKind::kReleasedAt,
-                                  AtomKind::kPredicate, AtomKind::kLocation,  AtomKind::kHit,
-                                  AtomKind::kRunning,   AtomKind::kSucceeded, AtomKind::kResult,
-                                  AtomKind::kRegister,  AtomKind::kAuxiliary, AtomKind::kUnused};
-
 /// The number in `L3` for ("L", ""), or in `CHOICE(3)` for ("CHOICE(", ")"). None if it is written
 /// in another way than it would be printed.
 std::optional<std::uint32_t> number_within(std::string_view text, std::string_view before,
@@ -40,43 +35,6 @@ struct PlanAtomPrinter {
 };
 
 }  // namespace
-
-std::string_view to_string(AtomKind kind) {
-  switch (kind) {
-    case AtomKind::kHoldsAt:
-      return "HoldsAt";
-    case AtomKind::kHappens:
-      return "Happens";
-    case AtomKind::kReleasedAt:
-      return "ReleasedAt";
-    case AtomKind::kPredicate:
-      return "Predicate";
-    case AtomKind::kLocation:
-      return "Location";
-    case AtomKind::kHit:
-      return "Hit";
-    case AtomKind::kRunning:
-      return "Running";
-    case AtomKind::kSucceeded:
-      return "Succeeded";
-    case AtomKind::kResult:
-      return "Result";
-    case AtomKind::kRegister:
-      return "Register";
-    case AtomKind::kAuxiliary:
-      return "Auxiliary";
-    case AtomKind::kUnused:
-      return "Unused";
-  }
-  return {};
-}
-
-std::optional<AtomKind> atom_kind(std::string_view text) {
-  for (const auto kind : kAllKinds) {
-    if (to_string(kind) == text) return kind;
-  }
-  return std::nullopt;
-}
 
 bool is_of_plan(AtomKind kind) {
   return kind == AtomKind::kLocation || kind == AtomKind::kHit || kind == AtomKind::kRunning ||

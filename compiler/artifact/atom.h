@@ -9,6 +9,7 @@
 
 #include "compiler/artifact/literal.h"
 #include "compiler/base/id.h"
+#include "compiler/base/word_table.h"
 
 namespace parallax::compiler {
 
@@ -28,8 +29,10 @@ enum class AtomKind : std::uint8_t {
 };
 
 /// How an artifact writes a kind: the enumerator without its `k`.
-std::string_view to_string(AtomKind kind);
-std::optional<AtomKind> atom_kind(std::string_view text);
+inline constexpr auto kAtomKindWords =
+    base::word_table<AtomKind>("HoldsAt", "Happens", "ReleasedAt", "Predicate", "Location", "Hit",
+                               "Running", "Succeeded", "Result", "Register", "Auxiliary", "Unused");
+constexpr std::string_view to_string(AtomKind kind) { return kAtomKindWords.of(kind); }
 
 /// True for the kinds that have no meaning outside the clauses and need no name.
 inline bool is_nameless(AtomKind kind) {

@@ -17,6 +17,7 @@
 #include "compiler/artifact/literal.h"
 #include "compiler/artifact/objective.h"
 #include "compiler/base/source_file.h"
+#include "compiler/base/word_table.h"
 
 namespace parallax::compiler {
 
@@ -36,8 +37,10 @@ enum class OriginKind : std::uint8_t {
 };
 
 /// `axiom`, `effect axiom`, ... as artifacts and messages write it.
-std::string_view to_string(OriginKind kind);
-std::optional<OriginKind> origin_kind(std::string_view text);
+inline constexpr auto kOriginKindWords = base::word_table<OriginKind>(
+    "axiom", "effect axiom", "trajectory axiom", "frame axiom", "completion", "state invariant",
+    "atom without a mention", "plan step", "state constraint", "objective", "trace");
+constexpr std::string_view to_string(OriginKind kind) { return kOriginKindWords.of(kind); }
 
 /// A range of a source text as messages print it; it outlives the text.
 struct TextPlace {

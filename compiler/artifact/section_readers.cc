@@ -82,7 +82,7 @@ bool SymbolReader::read_event() {
 }
 
 bool SymbolReader::read_kind(AtomKind& kind) {
-  const auto known = atom_kind(cursor_.raw_word());
+  const auto known = kAtomKindWords.find(cursor_.raw_word());
   if (!known) return cursor_.expected("the kind of an atom");
   kind = *known;
   return true;
@@ -202,7 +202,7 @@ bool ProvenanceReader::read_axiom() {
   }
   std::string kind;
   if (!cursor_.word("the kind of an axiom", kind)) return false;
-  const auto known = origin_kind(kind);
+  const auto known = kOriginKindWords.find(kind);
   if (!known) return cursor_.expected("the kind of an axiom");
   origin.kind = *known;
   if (!places_.read_place(cursor_, origin.place) || !cursor_.word("a text", origin.text)) {

@@ -1,7 +1,6 @@
 #include "compiler/builtins/designator_links.h"
 
 #include <algorithm>
-#include <iterator>
 
 namespace parallax::compiler {
 
@@ -53,11 +52,8 @@ bool is_designator(const Value& value) {
 }
 
 std::optional<DesignatorKind> designator_class(std::string_view name) {
-  if (name == "motion") return DesignatorKind::kMotion;
-  if (name == "action") return DesignatorKind::kAction;
-  if (name == "object") return DesignatorKind::kObject;
-  if (name == "location") return DesignatorKind::kLocation;
-  return std::nullopt;
+  const auto kind = kDesignatorKindWords.find(name);
+  return kind == DesignatorKind::kAllObjects ? std::nullopt : kind;
 }
 
 std::optional<bool> has_designator_type(const Value& value, std::string_view type) {

@@ -92,22 +92,6 @@ std::string print_number(const Number& number) {
 
 }  // namespace
 
-std::string_view to_string(DesignatorKind kind) {
-  switch (kind) {
-    case DesignatorKind::kMotion:
-      return "motion";
-    case DesignatorKind::kAction:
-      return "action";
-    case DesignatorKind::kObject:
-      return "object";
-    case DesignatorKind::kLocation:
-      return "location";
-    case DesignatorKind::kAllObjects:
-      return "all objects";
-  }
-  return "";
-}
-
 ValueStore::ValueStore() {
   intern({});
   truth_ = symbol("t");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/base/id.h"
+#include "compiler/base/word_table.h"
 #include "compiler/lisp/number.h"
 #include "compiler/plan/plan_graph.h"
 #include "compiler/plan/pose_locator.h"
@@ -40,7 +41,9 @@ enum class ValueKind : std::uint8_t {
 };
 
 enum class DesignatorKind : std::uint8_t { kMotion, kAction, kObject, kLocation, kAllObjects };
-std::string_view to_string(DesignatorKind kind);
+inline constexpr auto kDesignatorKindWords =
+    base::word_table<DesignatorKind>("motion", "action", "object", "location", "all objects");
+constexpr std::string_view to_string(DesignatorKind kind) { return kDesignatorKindWords.of(kind); }
 
 /// A function as a value: a unit of the plan or a built-in. One that shares variables with the code
 /// around it lives no longer than they do; a frame and places on the stack say how long that is.

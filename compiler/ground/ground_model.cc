@@ -212,18 +212,6 @@ Timepoint GroundModel::needed_horizon_of(FormulaId root) const {
   return latest;
 }
 
-std::string_view effect_word(EffectKind kind) {
-  switch (kind) {
-    case EffectKind::kInitiates:
-      return "Initiates";
-    case EffectKind::kTerminates:
-      return "Terminates";
-    case EffectKind::kReleases:
-      return "Releases";
-  }
-  return "?";
-}
-
 void EffectRows::add_always(const EffectRow& row) {
   by_fluent_[row.fluent].push_back(static_cast<std::uint32_t>(always_.size()));
   always_.push_back(row);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "compiler/artifact/compiled_model.h"
+#include "compiler/base/word_table.h"
 #include "compiler/formula/formula.h"
 #include "compiler/ground/universe.h"
 
@@ -185,8 +186,9 @@ struct EffectKey {
   friend auto operator<=>(const EffectKey&, const EffectKey&) = default;
 };
 
-/// "Initiates", "Terminates" or "Releases".
-std::string_view effect_word(EffectKind kind);
+inline constexpr auto kEffectWords =
+    base::word_table<EffectKind>("Initiates", "Terminates", "Releases");
+constexpr std::string_view effect_word(EffectKind kind) { return kEffectWords.of(kind); }
 
 /// The completed effect predicates: Initiates(e,f,t) holds iff some row of t for e and f has a
 /// true condition. Rows are kept in order of axioms and instances: some hold at every timepoint

@@ -1,4 +1,5 @@
 #include "compiler/base/codes/plans.h"
+#include "compiler/builtins/designator_links.h"
 #include "compiler/interpreter/form_compiler.h"
 
 namespace parallax::compiler {
@@ -9,11 +10,7 @@ std::optional<DesignatorKind> designator_kind(std::string_view article, std::str
     if (noun == "object" || noun == "objects") return DesignatorKind::kAllObjects;
     return std::nullopt;
   }
-  if (noun == "motion") return DesignatorKind::kMotion;
-  if (noun == "action") return DesignatorKind::kAction;
-  if (noun == "object") return DesignatorKind::kObject;
-  if (noun == "location") return DesignatorKind::kLocation;
-  return std::nullopt;
+  return designator_class(noun);
 }
 
 bool is_article(std::string_view word) { return word == "a" || word == "an" || word == "all"; }

@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "compiler/base/codes/plans.h"
+#include "compiler/base/word_table.h"
 #include "compiler/interpreter/explorer.h"
 #include "compiler/interpreter/idle_designators.h"
 #include "compiler/interpreter/plan_compiler.h"
@@ -370,17 +371,8 @@ BranchId Explorer::free_branch(std::string choice, DatumId form) {
 
 namespace {
 
-std::string_view choice_of(PlanMachine::ParEnd end) {
-  switch (end) {
-    case PlanMachine::ParEnd::kValue:
-      return "the `pursue` ends";
-    case PlanMachine::ParEnd::kFailure:
-      return "the branches fail";
-    case PlanMachine::ParEnd::kFailureAfterCleanups:
-      return "the branches fail after the clean-ups";
-  }
-  return "";
-}
+constexpr auto kParEndWords = base::word_table<PlanMachine::ParEnd>(
+    "the `pursue` ends", "the branches fail", "the branches fail after the clean-ups");
 
 }  // namespace
 
@@ -410,7 +402,7 @@ std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
   const auto choice = [&](std::size_t way) {
     const bool goes_on = way < waiting.size();
     return free_branch(goes_on ? (way == 0 ? "the first branch goes on" : "the next branch goes on")
-                               : std::string(choice_of(endings[way - waiting.size()].end)),
+                               : std::string(kParEndWords.of(endings[way - waiting.size()].end)),
                        form);
   };
   const auto first = choice(0);

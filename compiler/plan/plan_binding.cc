@@ -429,10 +429,6 @@ base::Result<PlanBinding> BindingParser::parse() {
 
 }  // namespace
 
-std::string_view to_string(PerformKind kind) {
-  return kind == PerformKind::kMotion ? "motion" : "action";
-}
-
 std::string normalise_key(std::string_view key) {
   if (key == "target" || key == "pose" || key == "location" || key == "goal") return "target";
   if (key == "object" || key == "for") return "object";

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,13 +9,15 @@
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/result.h"
 #include "compiler/base/source_file.h"
+#include "compiler/base/word_table.h"
 #include "compiler/plan/formula_tree.h"
 
 namespace parallax::compiler {
 
 /// Which designators can be performed.
 enum class PerformKind : std::uint8_t { kMotion, kAction };
-std::string_view to_string(PerformKind kind);
+inline constexpr auto kPerformKindWords = base::word_table<PerformKind>("motion", "action");
+constexpr std::string_view to_string(PerformKind kind) { return kPerformKindWords.of(kind); }
 
 /// The role that a designator key names: target|pose|location|goal -> target, object|for ->
 /// object, arm|gripper|left-...|right-... -> arm; every other key is its own role. Without colon.

@@ -5,6 +5,7 @@
 
 #include "compiler/base/codes/names.h"
 #include "compiler/base/suggest.h"
+#include "compiler/base/word_table.h"
 #include "compiler/sema/declarations.h"
 #include "compiler/sema/name_advice.h"
 #include "compiler/syntax/lexer.h"
@@ -36,21 +37,9 @@ constexpr std::array<OptionInfo, 12> kOptions = {{
     {"weighted", Values::kOff, nullptr},
 }};
 
-std::string_view expected(Values values) {
-  switch (values) {
-    case Values::kOnOff:
-      return "`on` or `off`";
-    case Values::kEncoding:
-      return "`2` or `3`";
-    case Values::kSolver:
-      return "`relsat`, `walksat`, `minisat`, `maxwalksat` or `wmaxsat`";
-    case Values::kOff:
-      return "`off` (weighted formulas are not supported)";
-    case Values::kFile:
-      return "a path";
-  }
-  return {};
-}
+constexpr auto kExpectedValues = base::word_table<Values>(
+    "`on` or `off`", "`2` or `3`", "`relsat`, `walksat`, `minisat`, `maxwalksat` or `wmaxsat`",
+    "a path", "`off` (weighted formulas are not supported)");
 
 bool allowed(Values values, std::string_view value) {
   switch (values) {
@@ -79,7 +68,7 @@ void apply_option(const Ast& ast, const Statement& statement, DeclaredOptions& o
     if (option.name != name) continue;
     if (!allowed(option.values, value)) {
       sink.error(codes::kOptionValue, ast.source(statement.value), name, shortened(value),
-                 expected(option.values));
+                 kExpectedValues.of(option.values));
       return;
     }
     if (option.flag != nullptr) options.*option.flag = value == "on";

@@ -5,44 +5,15 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "compiler/sema/name_advice.h"
 
 namespace parallax::compiler {
 namespace {
 
-std::string_view spelling(ArithmeticOp op) {
-  switch (op) {
-    case ArithmeticOp::kAdd:
-      return "+";
-    case ArithmeticOp::kSubtract:
-      return "-";
-    case ArithmeticOp::kMultiply:
-      return "*";
-    case ArithmeticOp::kDivide:
-      return "/";
-    case ArithmeticOp::kModulo:
-      return "%";
-  }
-  return "?";
-}
+constexpr auto kArithmeticSigns = base::word_table<ArithmeticOp>("+", "-", "*", "/", "%");
 
-std::string_view spelling(CompareOp op) {
-  switch (op) {
-    case CompareOp::kEqual:
-      return "=";
-    case CompareOp::kNotEqual:
-      return "!=";
-    case CompareOp::kLess:
-      return "<";
-    case CompareOp::kLessEqual:
-      return "<=";
-    case CompareOp::kGreater:
-      return ">";
-    case CompareOp::kGreaterEqual:
-      return ">=";
-  }
-  return "?";
-}
+constexpr auto kCompareSigns = base::word_table<CompareOp>("=", "!=", "<", "<=", ">", ">=");
 
 /// Writes formulas and terms with an explicit stack of pending nodes.
 class TreeWriter {
@@ -126,7 +97,7 @@ class TreeWriter {
   void comparison(const TypedFormula& what, bool inside) {
     if (inside) text("(");
     term(what.terms[0], true);
-    text(spelling(what.compare));
+    text(kCompareSigns.of(what.compare));
     term(what.terms[1], true);
     if (inside) text(")");
   }
@@ -183,7 +154,7 @@ class TreeWriter {
       case TermKind::kArithmetic:
         if (inside) text("(");
         term(what.arguments[0], true);
-        text(spelling(what.op));
+        text(kArithmeticSigns.of(what.op));
         term(what.arguments[1], true);
         if (inside) text(")");
         return;

@@ -17,22 +17,6 @@ constexpr std::size_t kMostErrors = 20;  // later ones are not shown
 
 }  // namespace
 
-std::string_view kind_word(SymbolKind kind) {
-  switch (kind) {
-    case SymbolKind::kPredicate:
-      return "predicate";
-    case SymbolKind::kFunction:
-      return "function";
-    case SymbolKind::kFluent:
-      return "fluent";
-    case SymbolKind::kEvent:
-      return "event";
-    case SymbolKind::kReified:
-      return "term constructor";
-  }
-  return {};
-}
-
 std::string with_article(std::string_view noun) {
   const bool vowel = !noun.empty() && std::string_view("aeiou").find(noun[0]) != noun.npos;
   return fmt::format("{} {}", vowel ? "an" : "a", noun);

@@ -7,12 +7,14 @@
 #include <string_view>
 
 #include "compiler/base/diagnostic.h"
+#include "compiler/base/word_table.h"
 #include "compiler/sema/typed_model.h"
 
 namespace parallax::compiler {
 
-/// "predicate", "fluent", ... for messages.
-std::string_view kind_word(SymbolKind kind);
+inline constexpr auto kSymbolKindWords =
+    base::word_table<SymbolKind>("predicate", "function", "fluent", "event", "term constructor");
+constexpr std::string_view kind_word(SymbolKind kind) { return kSymbolKindWords.of(kind); }
 /// "an event", "a fluent".
 std::string with_article(std::string_view noun);
 /// "Filled(cup)" as it was declared.

@@ -6,72 +6,9 @@
 
 namespace parallax::compiler {
 
-std::string_view spelling(Operator op) {
-  switch (op) {
-    case Operator::kImplies:
-      return "->";
-    case Operator::kIff:
-      return "<->";
-    case Operator::kOr:
-      return "|";
-    case Operator::kAnd:
-      return "&";
-    case Operator::kEqual:
-      return "=";
-    case Operator::kNotEqual:
-      return "!=";
-    case Operator::kLess:
-      return "<";
-    case Operator::kLessEqual:
-      return "<=";
-    case Operator::kGreaterEqual:
-      return ">=";
-    case Operator::kGreater:
-      return ">";
-    case Operator::kAdd:
-    case Operator::kPlus:
-      return "+";
-    case Operator::kSubtract:
-    case Operator::kNegate:
-      return "-";
-    case Operator::kMultiply:
-      return "*";
-    case Operator::kDivide:
-      return "/";
-    case Operator::kPower:
-      return "^";
-    case Operator::kModulo:
-      return "%";
-    case Operator::kNot:
-      return "!";
-    case Operator::kAlways:
-      return "always";
-    case Operator::kEventually:
-      return "eventually";
-    case Operator::kNext:
-      return "next";
-    case Operator::kWeakNext:
-      return "weak_next";
-    case Operator::kHistorically:
-      return "historically";
-    case Operator::kOnce:
-      return "once";
-    case Operator::kPreviously:
-      return "previously";
-    case Operator::kUntil:
-      return "until";
-    case Operator::kSince:
-      return "since";
-  }
-  return {};
-}
-
 std::optional<Operator> temporal_operator(std::string_view word) {
-  for (auto op = Operator::kAlways; op <= Operator::kSince;
-       op = static_cast<Operator>(static_cast<int>(op) + 1)) {
-    if (word == spelling(op)) return op;
-  }
-  return std::nullopt;
+  const auto op = kOperatorSigns.find(word);
+  return op && is_temporal(*op) ? op : std::nullopt;
 }
 
 NodeId Ast::add(Node node) {

@@ -8,6 +8,7 @@
 
 #include "compiler/base/id.h"
 #include "compiler/base/source_file.h"
+#include "compiler/base/word_table.h"
 
 namespace parallax::compiler {
 
@@ -69,7 +70,11 @@ constexpr bool is_binary_temporal(Operator op) { return op >= Operator::kUntil; 
 std::optional<Operator> temporal_operator(std::string_view word);
 
 /// The spelling in the source, such as "<->".
-std::string_view spelling(Operator op);
+inline constexpr auto kOperatorSigns =
+    base::word_table<Operator>("->", "<->", "|", "&", "=", "!=", "<", "<=", ">=", ">", "+", "-",
+                               "*", "/", "^", "%", "!", "-", "+", "always", "eventually", "next",
+                               "weak_next", "historically", "once", "previously", "until", "since");
+constexpr std::string_view spelling(Operator op) { return kOperatorSigns.of(op); }
 
 /// A piece of one file's text; empty means "not there".
 struct Word {

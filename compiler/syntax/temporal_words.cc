@@ -64,11 +64,8 @@ bool FormulaParser::report_unknown_temporal(const Token& token) {
   for (const auto& [other, op] : kOtherNames) {
     if (word == other) return report(spelling(op));
   }
-  std::vector<std::string> own;
-  for (auto op = Operator::kAlways; is_temporal(op) && !spelling(op).empty();
-       op = static_cast<Operator>(static_cast<int>(op) + 1)) {
-    own.emplace_back(spelling(op));
-  }
+  const auto* first = kOperatorSigns.begin() + static_cast<std::size_t>(Operator::kAlways);
+  const std::vector<std::string> own(first, kOperatorSigns.end());
   const auto near = base::nearest_name(word, own);
   return near && word.size() > 3 && report(*near);
 }

@@ -18,13 +18,6 @@ constexpr auto kSlowRun = std::chrono::milliseconds(20);
 
 }  // namespace
 
-std::optional<SyntheticKind> synthetic_kind(std::string_view word) {
-  for (std::size_t i = 0; i < kSyntheticWords.size(); ++i) {
-    if (kSyntheticWords[i] == word) return static_cast<SyntheticKind>(i);
-  }
-  return std::nullopt;
-}
-
 double synthetic_end_m(double x_m) { return kSyntheticGoal_m + 0.4 + 0.2 * x_m; }
 
 SimulatorInfo SyntheticSimulator::info() {

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string_view>
 
+#include "compiler/base/word_table.h"
 #include "harness/simulator/simulator.h"
 
 namespace parallax::harness {
@@ -27,9 +26,9 @@ enum class SyntheticKind : std::uint8_t {
   kLosingStates,  // likewise, and then it says that it is lost
   kWeightedStates,  // three initial states of weights; p is the mean by them, and without them
 };
-inline constexpr std::array<std::string_view, 13> kSyntheticWords = {
-    "by-start",   "by-seed",   "noisy",       "refusals", "losses",        "crash-first",    "slow",
-    "two-traces", "one-sound", "one-failing", "states",   "losing-states", "weighted-states"};
+inline constexpr auto kSyntheticWords = base::word_table<SyntheticKind>(
+    "by-start", "by-seed", "noisy", "refusals", "losses", "crash-first", "slow", "two-traces",
+    "one-sound", "one-failing", "states", "losing-states", "weighted-states");
 constexpr bool has_states(SyntheticKind kind) {
   return kind == SyntheticKind::kStates || kind == SyntheticKind::kLosingStates ||
          kind == SyntheticKind::kWeightedStates;
@@ -44,10 +43,7 @@ constexpr double synthetic_factor(SyntheticKind kind, std::size_t state) {
                                                  kWeighted = {1.0, 0.0, 2.0};
   return kind == SyntheticKind::kWeightedStates ? kWeighted[state] : kEqual[state];
 }
-inline std::string_view to_string(SyntheticKind kind) {
-  return kSyntheticWords[static_cast<std::size_t>(kind)];
-}
-std::optional<SyntheticKind> synthetic_kind(std::string_view word);
+constexpr std::string_view to_string(SyntheticKind kind) { return kSyntheticWords.of(kind); }
 
 /// Where a box lies at first [m], where `push-left` and `push-right` bring it to, and what else
 /// there is between them. A push that goes wrong leaves it where it is.

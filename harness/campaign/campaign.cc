@@ -116,8 +116,8 @@ class Campaign {
     if (!announce(*trial)) return sink_.already_reported();
     trial->continue_from(*journal_);
     trial->announce_by([this](const TracePlan& plan) { return announce_start(plan); });
-    const TraceContext context{scenario_, options_, family_, bench_,          *journal_,
-                               recorder_, files_,   sink_,   warned_of_limit_};
+    const TraceContext context{scenario_, options_,  family_, bench_,
+                               *journal_, recorder_, files_,  sink_};
     auto outcome = run_trace(context, *std::move(trial));
     if (!outcome) return sink_.already_reported();
     result_.simulations += outcome->result.simulations;
@@ -315,28 +315,11 @@ class Campaign {
   CampaignResult::Timing sampled_;    // what samples took, before it was repeated
   bool lost_too_often_ = false;
   bool limited_ = false;  // by max_traces
-  bool warned_of_limit_ = run_limit(scenario_).max_runs < run_limit(scenario_).needed;
   RunRecorder recorder_;
   TrialBench bench_;  // last, so that its threads end before what they use
 };
 
 }  // namespace
-
-std::string_view to_string(DiscrepancyKind kind) {
-  return kind == DiscrepancyKind::kTransient ? "transient" : "lasting";
-}
-
-std::string_view to_string(CampaignVerdict verdict) {
-  switch (verdict) {
-    case CampaignVerdict::kNoDiscrepancy:
-      return "no-discrepancy";
-    case CampaignVerdict::kDiscrepancy:
-      return "discrepancy";
-    case CampaignVerdict::kInconclusive:
-      break;
-  }
-  return "inconclusive";
-}
 
 base::Result<CampaignResult> run_campaign(const Scenario& scenario, TraceFeed& traces,
                                           const SimulatorFactory& make_simulator,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/campaign/cover_watch.h"
 #include "harness/campaign/sample_record.h"
 #include "harness/campaign/search_result.h"
@@ -24,8 +25,11 @@ namespace parallax::harness {
 struct SecondOpinion;  // second_opinion.h
 
 enum class CampaignVerdict : std::uint8_t { kNoDiscrepancy, kDiscrepancy, kInconclusive };
-/// "no-discrepancy", "discrepancy", "inconclusive"
-std::string_view to_string(CampaignVerdict verdict);
+inline constexpr auto kCampaignVerdictWords =
+    base::word_table<CampaignVerdict>("no-discrepancy", "discrepancy", "inconclusive");
+constexpr std::string_view to_string(CampaignVerdict verdict) {
+  return kCampaignVerdictWords.of(verdict);
+}
 
 /// A fluent on which the trace and the observation disagree.
 struct DivergingFluent {
@@ -63,8 +67,11 @@ enum class RepeatResult : std::uint8_t { kBitEqual, kDiffers, kLost };
 
 /// Does the simulation end otherwise than its trace, or did it just differ on the way?
 enum class DiscrepancyKind : std::uint8_t { kLasting, kTransient };
-/// "lasting", "transient"
-std::string_view to_string(DiscrepancyKind kind);
+inline constexpr auto kDiscrepancyKindWords =
+    base::word_table<DiscrepancyKind>("lasting", "transient");
+constexpr std::string_view to_string(DiscrepancyKind kind) {
+  return kDiscrepancyKindWords.of(kind);
+}
 
 /// The point where an executed plan left the paths of the model.
 struct PathDivergence {
@@ -131,8 +138,11 @@ struct Repetition {
   Outcome outcome = Outcome::kSame;
   std::string detail;  // where it differs, or why it was lost
 };
-/// "same", "other-bits", "not-clean", "lost", "refused"
-std::string_view to_string(Repetition::Outcome outcome);
+inline constexpr auto kRepetitionWords =
+    base::word_table<Repetition::Outcome>("same", "other-bits", "not-clean", "lost", "refused");
+constexpr std::string_view to_string(Repetition::Outcome outcome) {
+  return kRepetitionWords.of(outcome);
+}
 
 /// The repetitions of a run's first clean simulation at its end (harness/campaign/repetition.h).
 struct RepetitionResult {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/campaign/sample_record.h"
 
 namespace parallax::harness {
@@ -43,7 +44,8 @@ struct CoverResult {
   double confidence = 0.0, bound = 1.0;
   double epsilon = 0.0;  // what was asked for
 };
-/// "stopped", "all shown", "rarer than epsilon", "max_runs"
-std::string_view to_string(CoverResult::End end);
+inline constexpr auto kCoverEndWords =
+    base::word_table<CoverResult::End>("stopped", "all shown", "rarer than epsilon", "max_runs");
+constexpr std::string_view to_string(CoverResult::End end) { return kCoverEndWords.of(end); }
 
 }  // namespace parallax::harness

@@ -82,20 +82,6 @@ void rate_causes(const FixedCount& counted, bool lost_too_often, bool interrupte
                    [](const auto& a, const auto& b) { return a.count > b.count; });
 }
 
-std::string_view to_string(CoverResult::End end) {
-  switch (end) {
-    case CoverResult::End::kShown:
-      return "all shown";
-    case CoverResult::End::kRare:
-      return "rarer than epsilon";
-    case CoverResult::End::kRunLimit:
-      return "max_runs";
-    case CoverResult::End::kStopped:
-      break;
-  }
-  return "stopped";
-}
-
 std::string why_unfinished(const ExecutedPath& path, const Scenario& scenario) {
   switch (path.end) {
     case PathEnd::kPerformLimit:

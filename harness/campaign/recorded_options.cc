@@ -71,9 +71,9 @@ class Fields {
   std::string& wrong_;
 };
 
-template <typename Enum>
-void set_word(const Fields& fields, const char* key, std::span<const std::string_view> words,
-              Enum& value) {
+template <typename Enum, std::size_t kCount>
+void set_word(const Fields& fields, const char* key, const base::WordTable<Enum, kCount>& words,
+              auto& value) {
   if (const auto index = fields.word(key, words)) value = static_cast<Enum>(*index);
 }
 
@@ -94,9 +94,7 @@ PaperRuleSpec paper_of(const Fields& fields) {
 }
 
 void read_criterion(const Fields& fields, std::string& wrong, RecordedOptions& out) {
-  if (const auto kind = fields.word("kind", kCriterionWords)) {
-    out.criterion = static_cast<CriterionKind>(*kind);
-  }
+  set_word(fields, "kind", kCriterionWords, out.criterion);
   set_word(fields, "family", kFamilyWords, out.family);
   fields.count("runs");
   out.criterion_runs = fields.get<std::int64_t>("runs");
@@ -162,15 +160,12 @@ std::variant<RecordedOptions, std::string> recorded_options(std::string_view tex
     const Fields parts(*search, "options.search", wrong);
     parts.count("runs");
     out.search.runs = parts.get<std::int64_t>("runs").value_or(0);
-    const auto strategy = parts.word("strategy", strategy_names());
-    if (strategy) out.search.strategy = *strategy_kind(strategy_names()[*strategy]);
+    set_word(parts, "strategy", kSearchStrategies, out.search.strategy);
   }
   out.split_initial = fields.flag("split_initial");
   out.random_sequences = fields.flag("random_sequences");
   out.all_hits = fields.word("hits", std::array{"first"sv, "all"sv}) == std::size_t{1};
-  if (const auto word = fields.word("compare", kComparisons)) {
-    out.compare = static_cast<Comparison>(*word);
-  }
+  set_word(fields, "compare", kComparisons, out.compare);
   if (const auto word = fields.word("match", std::array{"trace"sv, "model"sv})) {
     out.match_model = *word == 1;
   }

@@ -9,22 +9,6 @@
 
 namespace parallax::harness {
 
-std::string_view to_string(Repetition::Outcome outcome) {
-  switch (outcome) {
-    case Repetition::Outcome::kSame:
-      return "same";
-    case Repetition::Outcome::kOtherBits:
-      return "other-bits";
-    case Repetition::Outcome::kNotClean:
-      return "not-clean";
-    case Repetition::Outcome::kLost:
-      return "lost";
-    case Repetition::Outcome::kRefused:
-      break;
-  }
-  return "refused";
-}
-
 namespace {
 
 using Was = Repetition::Outcome;

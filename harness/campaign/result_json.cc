@@ -5,15 +5,6 @@
 #include "compiler/base/json.h"
 
 namespace parallax::harness {
-namespace {
-
-template <typename Words, typename Enum>
-std::string_view word(const Words& words, Enum value) {
-  return words[static_cast<std::size_t>(value)];
-}
-
-}  // namespace
-
 std::string criterion_json(const CriterionSpec& criterion) {
   const auto& paper = criterion.paper;
   nlohmann::ordered_json out = {{"kind", to_string(criterion.kind)},
@@ -22,10 +13,10 @@ std::string criterion_json(const CriterionSpec& criterion) {
                                 {"family", to_string(criterion.family)},
                                 {"paper",
                                  {{"preset", paper.preset},
-                                  {"sigma", word(kSigmaWords, paper.sigma)},
-                                  {"root", word(kRootWords, paper.root)},
-                                  {"intercept", word(kInterceptWords, paper.intercept)},
-                                  {"interval", word(kIntervalWords, paper.interval)},
+                                  {"sigma", kSigmaWords.of(paper.sigma)},
+                                  {"root", kRootWords.of(paper.root)},
+                                  {"intercept", kInterceptWords.of(paper.intercept)},
+                                  {"interval", kIntervalWords.of(paper.interval)},
                                   {"extra_runs", paper.extra_runs},
                                   {"exempt_inherited", paper.exempt_inherited},
                                   {"tolerance_m", paper.tolerance_m},

@@ -23,18 +23,6 @@ bool is_left_over(std::string_view name) {
 
 }  // namespace
 
-std::string_view to_string(RecordMode mode) {
-  switch (mode) {
-    case RecordMode::kNone:
-      return "none";
-    case RecordMode::kDiscrepancies:
-      return "discrepancies";
-    case RecordMode::kAll:
-      break;
-  }
-  return "all";
-}
-
 std::optional<Recording> recording_of(const SimulatorInfo& simulator, const SampleRecord& record,
                                       const std::vector<std::string>& events,
                                       const MotionLog& log) {

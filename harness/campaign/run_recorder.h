@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
+#include "compiler/base/word_table.h"
 #include "harness/campaign/motion_tap.h"
 #include "harness/campaign/sample_record.h"
 #include "harness/recording/recording.h"
@@ -22,7 +23,8 @@ namespace parallax::harness {
 /// The simulations whose motion is kept. kDiscrepancies: discrepancies, executions that did not
 /// end, and the first three clean simulations of each trace.
 enum class RecordMode : std::uint8_t { kNone, kDiscrepancies, kAll };
-std::string_view to_string(RecordMode mode);  // "none", "discrepancies", "all"
+inline constexpr auto kRecordModes = base::word_table<RecordMode>("none", "discrepancies", "all");
+constexpr std::string_view to_string(RecordMode mode) { return kRecordModes.of(mode); }
 
 /// The recording of one simulation; none if the simulator reported no motion. `events`: names of
 /// the performed events. If a frame is incomplete, those before it are kept.

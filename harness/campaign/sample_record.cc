@@ -66,12 +66,6 @@ std::string reason_word(const ActionOutcome& outcome) {
   return outcome.reason.substr(0, outcome.reason.find(':'));
 }
 
-std::string_view to_string(PathEnd end) {
-  static constexpr std::string_view kWords[] = {
-      "done", "failed", "perform-limit", "time-limit", "cut", "unbound-reason", "unnamed-object"};
-  return kWords[static_cast<std::size_t>(end)];
-}
-
 double simulated_s(std::span<const SampleRecord> records) {
   double sum = 0.0;
   for (const auto& record : records) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/sampling/sampler.h"
 #include "harness/simulator/simulator.h"
 
@@ -15,7 +16,9 @@ namespace parallax::harness {
 /// How one simulation ended. The last two are no results: no draw of this sample was a valid start;
 /// the simulator does not know what it was asked for.
 enum class SampleStatus : std::uint8_t { kOk, kLost, kRejected, kRefused };
-std::string_view to_string(SampleStatus status);  // "ok", "lost", "rejected", "refused"
+inline constexpr auto kSampleStatusWords =
+    base::word_table<SampleStatus>("ok", "lost", "rejected", "refused");
+constexpr std::string_view to_string(SampleStatus status) { return kSampleStatusWords.of(status); }
 
 /// A call of a controller; `arguments` after the plan was laid over the binding.
 struct ActionCall {
@@ -55,8 +58,9 @@ enum class PathEnd : std::uint8_t {
   kUnboundReason,
   kUnnamedObject,
 };
-/// "done", "failed", "perform-limit", "time-limit", "cut", ...
-std::string_view to_string(PathEnd end);
+inline constexpr auto kPathEndWords = base::word_table<PathEnd>(
+    "done", "failed", "perform-limit", "time-limit", "cut", "unbound-reason", "unnamed-object");
+constexpr std::string_view to_string(PathEnd end) { return kPathEndWords.of(end); }
 
 /// One perform of an executed plan, and what the plan was told of it.
 struct PathStep {

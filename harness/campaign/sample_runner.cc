@@ -293,20 +293,6 @@ std::optional<ActionCall> call_of(const Scenario& scenario, const GroundFluent& 
   return call_for(*binding, {event, said});
 }
 
-std::string_view to_string(SampleStatus status) {
-  switch (status) {
-    case SampleStatus::kOk:
-      return "ok";
-    case SampleStatus::kLost:
-      return "lost";
-    case SampleStatus::kRejected:
-      return "rejected";
-    case SampleStatus::kRefused:
-      break;
-  }
-  return "refused";
-}
-
 bool may_repeat_losses(const SimulatorInfo& simulator) {
   return simulator.seeds && simulator.determinism == "bitwise";
 }

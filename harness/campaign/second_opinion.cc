@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <set>
 #include <utility>
 
 #include "compiler/base/codes/campaigns.h"
@@ -101,18 +100,6 @@ std::string other_start(const DivergingFluent& differs) {
 }
 
 }  // namespace
-
-std::string_view to_string(OpinionAnswer answer) {
-  switch (answer) {
-    case OpinionAnswer::kClean:
-      return "clean";
-    case OpinionAnswer::kDiscrepancy:
-      return "discrepancy";
-    case OpinionAnswer::kNone:
-      break;
-  }
-  return "none";
-}
 
 std::int64_t SecondOpinion::count(bool found, OpinionAnswer answer) const {
   return std::count_if(opinions.begin(), opinions.end(), [&](const Opinion& one) {

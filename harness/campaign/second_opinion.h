@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/loop_input.h"
 #include "harness/campaign/sample_row.h"
@@ -17,8 +18,11 @@ namespace parallax::harness {
 /// The verdict of another simulator on the start of one simulation: the same verdict, the other
 /// one, or none, because it was lost or does not take the start.
 enum class OpinionAnswer : std::uint8_t { kClean, kDiscrepancy, kNone };
-/// "clean", "discrepancy", "none"
-std::string_view to_string(OpinionAnswer answer);
+inline constexpr auto kOpinionAnswerWords =
+    base::word_table<OpinionAnswer>("clean", "discrepancy", "none");
+constexpr std::string_view to_string(OpinionAnswer answer) {
+  return kOpinionAnswerWords.of(answer);
+}
 
 /// One simulation of a run, made again by the other simulator.
 struct Opinion {

@@ -38,7 +38,6 @@ struct TraceContext {
   RunRecorder& recorder;
   const base::SourceFiles& files;
   base::DiagnosticSink& sink;
-  bool& warned_of_limit;
 };
 
 /// Takes samples of one trace until the criterion, a discrepancy or a limit ends it.

@@ -133,12 +133,6 @@ void weigh_borders(const std::vector<CauseBorder>& borders, const std::vector<Ca
   finding.rule = rule_of_borders(borders, runs, parameters);
 }
 
-std::string_view to_string(CauseKind kind) {
-  static constexpr std::string_view kWords[] = {"unknown", "always",    "region",
-                                                "random",  "simulator", "state"};
-  return kWords[static_cast<std::size_t>(kind)];
-}
-
 CauseFinding tell_cause(const std::vector<CauseRun>& runs, bool is_model) {
   CauseFinding out;
   out.runs = static_cast<std::int64_t>(runs.size());

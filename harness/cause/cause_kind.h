@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/cause/failure_rule.h"
 #include "harness/cause/state_rule.h"
 
@@ -20,8 +21,9 @@ enum class CauseKind : std::uint8_t {
   kSimulator,  // the same where the world is a simulator: its seed alone decides
   kState,      // every run fails in some initial states and none in others: a condition is missing
 };
-/// "unknown", "always", "region", "random", "simulator", "state"
-std::string_view to_string(CauseKind kind);
+inline constexpr auto kCauseKindWords =
+    base::word_table<CauseKind>("unknown", "always", "region", "random", "simulator", "state");
+constexpr std::string_view to_string(CauseKind kind) { return kCauseKindWords.of(kind); }
 
 /// Counts of repetitions from one failing start, and of those that failed again.
 struct Persistence {

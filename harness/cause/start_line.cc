@@ -13,18 +13,12 @@
 #include "harness/cause/start_line.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "compiler/base/contract.h"
 
 namespace parallax::harness {
 namespace {
-
-constexpr std::array<std::string_view, 4> kVerdictWords = {"fails", "clean", "otherwise",
-                                                           "no-start"};
-constexpr std::array<std::string_view, 4> kRoleWords = {"open", "indifferent", "decides",
-                                                        "no-start"};
 
 double between(double a, double b) { return a + 0.5 * (b - a); }
 
@@ -36,13 +30,6 @@ StartPoint with(StartPoint start, std::size_t parameter, double value) {
 bool tells(StartVerdict verdict) { return verdict != StartVerdict::kNoStart; }
 
 }  // namespace
-
-std::string_view to_string(StartVerdict verdict) {
-  return kVerdictWords[static_cast<std::size_t>(verdict)];
-}
-std::string_view to_string(ParameterRole role) {
-  return kRoleWords[static_cast<std::size_t>(role)];
-}
 
 bool BorderBracket::is_narrow() const {
   if (width() <= tolerance) return true;

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/word_table.h"
+
 namespace parallax::harness {
 
 /// The result of a simulation from a start, with respect to a discrepancy.
@@ -17,8 +19,11 @@ enum class StartVerdict : std::uint8_t {
   kOtherwise,  // it goes wrong earlier, or in another way
   kNoStart,    // the simulator does not take the start, or was lost
 };
-/// "fails", "clean", "otherwise", "no-start"
-std::string_view to_string(StartVerdict verdict);
+inline constexpr auto kStartVerdictWords =
+    base::word_table<StartVerdict>("fails", "clean", "otherwise", "no-start");
+constexpr std::string_view to_string(StartVerdict verdict) {
+  return kStartVerdictWords.of(verdict);
+}
 
 /// Values of the parameters of a start, in a fixed order.
 using StartPoint = std::vector<double>;
@@ -63,8 +68,9 @@ enum class ParameterRole : std::uint8_t {
   kDecides,      // moving it, and nothing else, to the middle ends it
   kNoStart,      // with it in the middle there is no simulation that would tell
 };
-/// "open", "indifferent", "decides", "no-start"
-std::string_view to_string(ParameterRole role);
+inline constexpr auto kParameterRoleWords =
+    base::word_table<ParameterRole>("open", "indifferent", "decides", "no-start");
+constexpr std::string_view to_string(ParameterRole role) { return kParameterRoleWords.of(role); }
 
 /// A failing start, as near to the middle of its cell as whole moves of single parameters take it.
 struct ShrunkStart {

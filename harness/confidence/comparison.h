@@ -1,10 +1,10 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
+
+#include "compiler/base/word_table.h"
 
 namespace parallax::harness {
 
@@ -13,35 +13,26 @@ enum class Comparison : std::uint8_t {
   kEveryStep,  // at the first difference prediction and physics part, wherever the run ends
   kFinal,      // at the last timepoint only, as in the paper of Meywerk et al.
 };
-/// The words for it, in the order of the enumerators.
-inline constexpr std::array<std::string_view, 2> kComparisons = {"every-step", "final"};
-constexpr std::string_view to_string(Comparison comparison) {
-  return kComparisons[static_cast<std::size_t>(comparison)];
-}
+inline constexpr auto kComparisons = base::word_table<Comparison>("every-step", "final");
+constexpr std::string_view to_string(Comparison comparison) { return kComparisons.of(comparison); }
 
 /// The object of the simulation: the events of the model's traces one after the other, whatever
 /// comes of them, or the plan itself, which goes on as it does on the robot.
 enum class Execution : std::uint8_t { kOpenLoop, kClosedLoop };
-inline constexpr std::array<std::string_view, 2> kExecutions = {"open-loop", "closed-loop"};
-constexpr std::string_view to_string(Execution execution) {
-  return kExecutions[static_cast<std::size_t>(execution)];
-}
+inline constexpr auto kExecutions = base::word_table<Execution>("open-loop", "closed-loop");
+constexpr std::string_view to_string(Execution execution) { return kExecutions.of(execution); }
 
 /// Where executions of a plan begin: in any initial state, each equally likely, or at first in
 /// those from which the solver finds a way to what no execution went through yet.
 enum class Starts : std::uint8_t { kUniform, kGuided };
-inline constexpr std::array<std::string_view, 2> kStartsWords = {"uniform", "guided"};
-constexpr std::string_view to_string(Starts starts) {
-  return kStartsWords[static_cast<std::size_t>(starts)];
-}
+inline constexpr auto kStartsWords = base::word_table<Starts>("uniform", "guided");
+constexpr std::string_view to_string(Starts starts) { return kStartsWords.of(starts); }
 
 /// The initial states that the simulations of a trace begin in: all that lead to its events, each
 /// equally likely or by weights; or only the first in the model's order.
 enum class Initial : std::uint8_t { kAll, kWeights, kFirst };
-inline constexpr std::array<std::string_view, 3> kInitialWords = {"all", "weights", "first"};
-constexpr std::string_view to_string(Initial initial) {
-  return kInitialWords[static_cast<std::size_t>(initial)];
-}
+inline constexpr auto kInitialWords = base::word_table<Initial>("all", "weights", "first");
+constexpr std::string_view to_string(Initial initial) { return kInitialWords.of(initial); }
 
 /// So many initial states of a trace are listed; of more some are drawn.
 inline constexpr std::int64_t kMostInitialStates = 10'000;

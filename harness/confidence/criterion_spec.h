@@ -1,10 +1,11 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
+
+#include "compiler/base/word_table.h"
 
 namespace parallax::harness {
 
@@ -14,12 +15,9 @@ enum class CriterionKind : std::uint8_t {
   kAnytime,         // stop when the mixture's bound is below eps, whatever failed before
   kClopperPearson,  // a number of runs fixed in advance; then one look
 };
-/// The words that are typed and recorded, by value.
-inline constexpr std::array<std::string_view, 4> kCriterionWords = {"clean-runs", "paper",
-                                                                    "anytime", "clopper-pearson"};
-inline std::string_view to_string(CriterionKind kind) {
-  return kCriterionWords[static_cast<std::size_t>(kind)];
-}
+inline constexpr auto kCriterionWords =
+    base::word_table<CriterionKind>("clean-runs", "paper", "anytime", "clopper-pearson");
+constexpr std::string_view to_string(CriterionKind kind) { return kCriterionWords.of(kind); }
 
 /// The source of the criterion: "Hanley and Lippman-Hand 1983: ...".
 std::string_view source_of(CriterionKind kind);
@@ -30,11 +28,10 @@ enum class SigmaKind : std::uint8_t { kSse, kRmse, kResidualSd };
 enum class RootKind : std::uint8_t { kInitial, kFinal };
 enum class InterceptKind : std::uint8_t { kNone, kCentred, kFree };
 enum class IntervalKind : std::uint8_t { kMean, kPrediction };
-/// Their words in scenarios, headers of journals and reports, by value.
-inline constexpr std::array<std::string_view, 3> kSigmaWords = {"sse", "rmse", "residual-sd"};
-inline constexpr std::array<std::string_view, 2> kRootWords = {"initial", "final"};
-inline constexpr std::array<std::string_view, 3> kInterceptWords = {"none", "centred", "free"};
-inline constexpr std::array<std::string_view, 2> kIntervalWords = {"mean", "prediction"};
+inline constexpr auto kSigmaWords = base::word_table<SigmaKind>("sse", "rmse", "residual-sd");
+inline constexpr auto kRootWords = base::word_table<RootKind>("initial", "final");
+inline constexpr auto kInterceptWords = base::word_table<InterceptKind>("none", "centred", "free");
+inline constexpr auto kIntervalWords = base::word_table<IntervalKind>("mean", "prediction");
 
 /// The readings of the paper's rule (docs/statistics.md has the table of ambiguities).
 struct PaperRuleSpec {
@@ -60,10 +57,8 @@ enum class Family : std::uint8_t {
   kPerTrace,   // each by itself
   kAllTraces,  // all of them together: each trace may spend a share of the error 1-C
 };
-inline constexpr std::array<std::string_view, 2> kFamilyWords = {"per-trace", "all-traces"};
-inline std::string_view to_string(Family family) {
-  return kFamilyWords[static_cast<std::size_t>(family)];
-}
+inline constexpr auto kFamilyWords = base::word_table<Family>("per-trace", "all-traces");
+constexpr std::string_view to_string(Family family) { return kFamilyWords.of(family); }
 
 struct CriterionSpec {
   CriterionKind kind = CriterionKind::kCleanRuns;

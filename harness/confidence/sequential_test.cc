@@ -21,20 +21,6 @@
 
 namespace parallax::harness {
 
-std::string_view to_string(SequentialAnswer answer) {
-  switch (answer) {
-    case SequentialAnswer::kBelow:
-      return "below";
-    case SequentialAnswer::kAbove:
-      return "above";
-    case SequentialAnswer::kUnsettled:
-      return "unsettled";
-    case SequentialAnswer::kOpen:
-      break;
-  }
-  return "undecided";
-}
-
 SequentialTest::SequentialTest(const IndifferenceRegion& region)
     : failure_step_(std::log(region.upper / region.lower)),
       clean_step_(std::log1p(-region.upper) - std::log1p(-region.lower)),

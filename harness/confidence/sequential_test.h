@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "compiler/base/word_table.h"
 #include "harness/confidence/run_result.h"
 
 namespace parallax::harness {
@@ -21,8 +22,11 @@ enum class SequentialAnswer : std::uint8_t {
   kUnsettled,  // the results of the lost runs would decide; further runs do not help
 };
 
-/// "undecided", "below", "above", "unsettled"
-std::string_view to_string(SequentialAnswer answer);
+inline constexpr auto kSequentialAnswerWords =
+    base::word_table<SequentialAnswer>("undecided", "below", "above", "unsettled");
+constexpr std::string_view to_string(SequentialAnswer answer) {
+  return kSequentialAnswerWords.of(answer);
+}
 
 /// Wald's sequential probability ratio test for a Bernoulli probability. It answers kBelow with a
 /// probability of at most 1 - C if p >= upper, and kAbove with at most 1 - C if p <= lower,

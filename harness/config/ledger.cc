@@ -112,18 +112,6 @@ base::Result<Ledger> ledger_of(const YamlNode& root, base::DiagnosticSink& sink)
 
 }  // namespace
 
-std::string_view to_string(LedgerStatus status) {
-  switch (status) {
-    case LedgerStatus::kOpen:
-      return "open";
-    case LedgerStatus::kRepaired:
-      return "repaired";
-    case LedgerStatus::kAccepted:
-      return "accepted";
-  }
-  return "";
-}
-
 std::string status_text(const LedgerEntry& entry) {
   switch (entry.status) {
     case LedgerStatus::kOpen:

@@ -9,12 +9,14 @@
 
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/source_file.h"
+#include "compiler/base/word_table.h"
 
 namespace parallax::harness {
 
 enum class LedgerStatus : std::uint8_t { kOpen, kRepaired, kAccepted };
-/// "open", "repaired", "accepted"
-std::string_view to_string(LedgerStatus status);
+inline constexpr auto kLedgerStatusWords =
+    base::word_table<LedgerStatus>("open", "repaired", "accepted");
+constexpr std::string_view to_string(LedgerStatus status) { return kLedgerStatusWords.of(status); }
 
 /// A known discrepancy, and what was decided about it. It is known again by its scenario, its event
 /// and those of outcome, fluents and trace that the entry has; the rest is told to people.

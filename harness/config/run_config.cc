@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <limits>
 
 #include "compiler/base/codes/scenarios.h"
 #include "harness/config/sections.h"
@@ -17,24 +16,14 @@ constexpr std::array<std::string_view, 6> kKinds = {
     "clean-runs", "paper", "anytime", "clopper-pearson", "paper-literal", "paper-repaired"};
 constexpr std::array<std::string_view, 2> kPresets = {"paper-literal", "paper-repaired"};
 
-/// Takes the position of a word as the enumerator, which stands at the same one in its enum.
-template <typename Enum, std::size_t Count>
-bool read_enum(const YamlFields& fields, std::string_view key,
-               const std::array<std::string_view, Count>& words, Enum& out) {
-  const auto choice =
-      fields.choice(key, fmt::format("value of `{}`", key), words, static_cast<std::size_t>(out));
-  if (choice) out = static_cast<Enum>(*choice);
-  return choice.has_value();
-}
-
 /// A preset, and single readings laid over it; the report then calls the result "custom".
 void read_paper_rule(const YamlFields& fields, PaperRuleSpec& rule) {
   const auto preset = fields.choice(Key::kPreset, Key::kPreset, kPresets);
   if (preset) rule = *preset == 1 ? paper_repaired() : paper_literal();
-  bool changed = read_enum(fields, Key::kSigma, kSigmaWords, rule.sigma);
-  changed = read_enum(fields, Key::kRoot, kRootWords, rule.root) || changed;
-  changed = read_enum(fields, Key::kIntercept, kInterceptWords, rule.intercept) || changed;
-  changed = read_enum(fields, Key::kInterval, kIntervalWords, rule.interval) || changed;
+  bool changed = fields.word(Key::kSigma, kSigmaWords, rule.sigma);
+  changed = fields.word(Key::kRoot, kRootWords, rule.root) || changed;
+  changed = fields.word(Key::kIntercept, kInterceptWords, rule.intercept) || changed;
+  changed = fields.word(Key::kInterval, kIntervalWords, rule.interval) || changed;
   changed = changed || fields.find(Key::kExtraRuns) != nullptr ||
             fields.find(Key::kExemptInherited) != nullptr ||
             fields.find(Key::kToleranceM) != nullptr || fields.find(Key::kBonferroni) != nullptr;
@@ -88,10 +77,7 @@ SearchSpec read_search(const YamlNode& node, base::DiagnosticSink& sink) {
   fields.only({Key::kRuns, Key::kStrategy});
   if (fields.require(Key::kRuns) == nullptr) return search;
   fields.integer(Key::kRuns, 0, kMaxSearchRuns, search.runs);
-  const auto choice =
-      fields.choice(Key::kStrategy, "value of " + key_text(Key::kStrategy), strategy_names());
-  ReadLog::fallback(map, Key::kStrategy, std::string(to_string(search.strategy)));
-  if (choice) search.strategy = *strategy_kind(strategy_names()[*choice]);
+  fields.word(Key::kStrategy, kSearchStrategies, search.strategy);
   return search;
 }
 
@@ -119,7 +105,7 @@ CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink) {
   fields.only(std::span<const std::string_view>(keys));
   fields.number(Key::kConfidence, kOpenUnit, criterion.confidence_level);
   fields.number(Key::kEpsilon, kOpenUnit, criterion.epsilon);
-  read_enum(fields, Key::kFamily, kFamilyWords, criterion.family);
+  fields.word(Key::kFamily, kFamilyWords, criterion.family);
   read_paper_rule(fields, criterion.paper);
   return criterion;
 }
@@ -142,16 +128,14 @@ void read_process_limits(YamlFields& fields, SimulatorSpec& simulator) {
 /// without.
 void read_engine(const YamlNode& node, std::string_view key, const char* known_as,
                  SimulatorSpec& simulator, base::DiagnosticSink& sink) {
-  std::vector<std::string> known;
-  for (const EngineKind kind : {EngineKind::kOde, EngineKind::kMujoco}) {
-    known.emplace_back(to_string(kind));
-    if (node.text != known.back()) continue;
-    simulator.engine = kind;
-    const std::string why = kind == EngineKind::kMujoco ? why_no_mujoco() : std::string();
+  if (const auto kind = kEngineWords.find(node.text)) {
+    simulator.engine = *kind;
+    const std::string why = *kind == EngineKind::kMujoco ? why_no_mujoco() : std::string();
     if (!why.empty()) sink.error(codes::kEngineUnavailable, node.range, node.text, why);
     return;
   }
   auto error = sink.error(codes::kYamlUnknownChoice, node.range, node.text, key);
+  const std::vector<std::string> known(kEngineWords.begin(), kEngineWords.end());
   add_suggestion(error, node.text, known, known_as);
 }
 

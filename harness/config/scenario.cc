@@ -128,14 +128,10 @@ class ScenarioReader {
     fields_.only(kScenarioKeys);
     const auto* execution = fields_.find(Key::kExecution);
     if (execution != nullptr) {
-      const auto choice = fields_.choice(Key::kExecution, "value of " + key_text(Key::kExecution),
-                                         kExecutions, static_cast<std::size_t>(scenario.execution));
-      if (choice) scenario.execution = static_cast<Execution>(*choice);
+      fields_.word(Key::kExecution, kExecutions, scenario.execution);
       scenario.execution_source = execution->range;
     }
-    const auto starts = fields_.choice(Key::kStarts, "value of " + key_text(Key::kStarts),
-                                       kStartsWords, static_cast<std::size_t>(scenario.starts));
-    if (starts) scenario.starts = static_cast<Starts>(*starts);
+    fields_.word(Key::kStarts, kStartsWords, scenario.starts);
     fields_.boolean(Key::kUntilCovered, scenario.until_covered);
     if (const auto* node = fields_.find(Key::kStartWeights)) {
       scenario.start_weights = read_start_weights(*node, sink_);
@@ -176,10 +172,7 @@ class ScenarioReader {
     const auto* weights = fields_.find(Key::kStartWeights);
     const auto* initial = fields_.find(Key::kInitial);
     if (weights != nullptr) scenario.initial = Initial::kWeights;
-    const auto choice = fields_.choice(Key::kInitial, "value of " + key_text(Key::kInitial),
-                                       kInitialWords, static_cast<std::size_t>(scenario.initial));
-    if (!choice || initial == nullptr) return;
-    scenario.initial = static_cast<Initial>(*choice);
+    if (!fields_.word(Key::kInitial, kInitialWords, scenario.initial)) return;
     scenario.initial_source = initial->range;
     const bool by_weights = scenario.initial == Initial::kWeights;
     if (by_weights && weights == nullptr) {

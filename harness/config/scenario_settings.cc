@@ -231,12 +231,6 @@ class SettingsReader {
 
 }  // namespace
 
-std::string_view to_string(Effect effect) {
-  static constexpr std::array<std::string_view, kEffects> kWords = {
-      "traces", "starts", "physics", "judgement", "claim", "words only"};
-  return kWords[static_cast<std::size_t>(effect)];
-}
-
 std::string path_text(const std::vector<std::string>& path) {
   std::string out;
   for (const auto& part : path) {

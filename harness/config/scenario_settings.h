@@ -6,13 +6,15 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/word_table.h"
+
 namespace parallax::harness {
 
 /// The effects that a setting of a scenario can have, in the order of the pipeline.
 enum class Effect : std::uint8_t { kTraces, kStarts, kPhysics, kJudgement, kClaim, kWords };
-/// "traces", "starts", "physics", "judgement", "claim", "words only"
-std::string_view to_string(Effect effect);
-inline constexpr std::size_t kEffects = 6;
+inline constexpr auto kEffectWords =
+    base::word_table<Effect>("traces", "starts", "physics", "judgement", "claim", "words only");
+constexpr std::string_view to_string(Effect effect) { return kEffectWords.of(effect); }
 
 /// One value of a scenario, by the way to it through the keys.
 struct Setting {

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/config/keys.h"
 #include "harness/config/read_log.h"
 #include "harness/config/yaml_reader.h"
@@ -80,6 +81,14 @@ class YamlFields {
   std::optional<std::size_t> choice(std::string_view key, std::string_view kind,
                                     std::span<const std::string_view> choices,
                                     std::size_t fallback) const;
+  /// A word of an enum, which holds the default. False: it is not there, or was reported.
+  template <typename Enum, std::size_t kCount>
+  bool word(std::string_view key, const base::WordTable<Enum, kCount>& words, Enum& value) const {
+    const auto given =
+        choice(key, "value of `" + std::string(key) + '`', words, static_cast<std::size_t>(value));
+    if (given) value = static_cast<Enum>(*given);
+    return given.has_value();
+  }
   /// Leaving the whole map out means the same as leaving it empty.
   void may_be_absent() const { ReadLog::optional(node_); }
   /// Exactly `count` numbers.

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "compiler/base/word_table.h"
 #include "harness/engine/mujoco_engine.h"
 #include "harness/world/shapes.h"
 
@@ -26,21 +27,8 @@ std::string quaternion(const Eigen::Matrix3d& R) {
   return fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}", q.w(), q.x(), q.y(), q.z());
 }
 
-const char* word_of(ShapeForm form) {
-  switch (form) {
-    case ShapeForm::kBox:
-      return "box";
-    case ShapeForm::kSphere:
-      return "sphere";
-    case ShapeForm::kCylinder:
-      return "cylinder";
-    case ShapeForm::kCapsule:
-      return "capsule";
-    case ShapeForm::kHull:
-      return "mesh";
-  }
-  return "";
-}
+constexpr auto kShapeFormWords =
+    base::word_table<ShapeForm>("box", "sphere", "cylinder", "capsule", "mesh");
 
 class TextWriter {
  public:
@@ -66,7 +54,7 @@ class TextWriter {
     for (const ShapeForm form :
          {ShapeForm::kBox, ShapeForm::kSphere, ShapeForm::kCylinder, ShapeForm::kCapsule}) {
       out_ += fmt::format("<geom name='{}' type='{}' size='1 1 1' contype='0' conaffinity='0'/>\n",
-                          probe_name(form), word_of(form));
+                          probe_name(form), kShapeFormWords.of(form));
     }
     for (std::size_t i = 0; i < hulls_.size(); ++i) {
       out_ += fmt::format("<geom name='{0}' type='mesh' mesh='{0}' contype='0' conaffinity='0'/>\n",
@@ -252,7 +240,7 @@ class TextWriter {
           shape.hull ? fmt::format("mesh='{}'", hull_name(*geom_hulls_.back()))
                      : fmt::format("size='{}'", numbers(engine_size_m(shape.form, shape.size_m)));
       out_ += fmt::format("<geom name='{}' type='{}' {} pos='{}' quat='{}'/>\n",
-                          geom_name(geom_bodies_.size()), word_of(shape.form), form,
+                          geom_name(geom_bodies_.size()), kShapeFormWords.of(shape.form), form,
                           numbers(place.p_LB + place.R_LB * shape.p_BS),
                           quaternion(place.R_LB * shape_rotation(shape)));
     }
@@ -274,7 +262,7 @@ std::string link_name(std::size_t link) { return fmt::format("link{}", link); }
 std::string joint_name(std::size_t link, int part) { return fmt::format("joint{}.{}", link, part); }
 std::string geom_name(std::size_t geom) { return fmt::format("geom{}", geom); }
 std::string hull_name(std::size_t hull) { return fmt::format("hull{}", hull); }
-std::string probe_name(ShapeForm form) { return fmt::format("probe-{}", word_of(form)); }
+std::string probe_name(ShapeForm form) { return fmt::format("probe-{}", kShapeFormWords.of(form)); }
 
 Eigen::Vector3d engine_size_m(ShapeForm form, const Eigen::Vector3d& size_m) {
   const double radius_m = 0.5 * size_m.x();

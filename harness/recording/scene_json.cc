@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "compiler/base/json.h"
+#include "compiler/base/word_table.h"
 
 namespace parallax::harness {
 namespace {
@@ -15,19 +16,10 @@ using OrderedSceneJson = nlohmann::ordered_json;
 
 constexpr std::size_t kMostBodies = 10'000, kMostShapes = 100'000, kMostGrippers = 64;
 constexpr std::size_t kMostCorners = 256, kMostFaces = 512;
-constexpr const char* kHull = "hull";
-constexpr std::array<std::pair<ShapeKind, const char*>, 4> kShapes = {
-    {{ShapeKind::kBox, "box"},
-     {ShapeKind::kSphere, "sphere"},
-     {ShapeKind::kCylinder, "cylinder"},
-     {ShapeKind::kCapsule, "capsule"}}};
-constexpr std::array<std::pair<BodyKind, const char*>, 6> kKinds = {
-    {{BodyKind::kFurniture, "furniture"},
-     {BodyKind::kDrawer, "drawer"},
-     {BodyKind::kRobot, "robot"},
-     {BodyKind::kGripper, "gripper"},
-     {BodyKind::kItem, "item"},
-     {BodyKind::kCamera, "camera"}}};
+constexpr auto kShapeKindWords =
+    base::word_table<ShapeKind>("box", "sphere", "cylinder", "capsule", "hull");
+constexpr auto kBodyKindWords =
+    base::word_table<BodyKind>("furniture", "drawer", "robot", "gripper", "item", "camera");
 
 /// How many numbers say how large it is.
 std::size_t size_count(ShapeKind kind) {
@@ -44,24 +36,19 @@ OrderedSceneJson pose_json(const Pose& pose) {
 
 OrderedSceneJson shape_json(const RecordedShape& shape) {
   OrderedSceneJson out = OrderedSceneJson::object();
-  for (const auto& [kind, name] : kShapes) {
-    if (kind != shape.kind) continue;
-    auto& size = out[name] = OrderedSceneJson::array();
-    for (std::size_t i = 0; i < size_count(kind); ++i) size.push_back(shape.size[i]);
-  }
+  auto& numbers = out[std::string(kShapeKindWords.of(shape.kind))] = OrderedSceneJson::array();
   if (shape.kind == ShapeKind::kHull) {
-    out[kHull] = shape.corners;
+    numbers = shape.corners;
     out["faces"] = shape.faces;
+  } else {
+    for (std::size_t i = 0; i < size_count(shape.kind); ++i) numbers.push_back(shape.size[i]);
   }
   if (shape.pose != Pose()) out["pose"] = pose_json(shape.pose);
   return out;
 }
 
 OrderedSceneJson body_json(const RecordedBody& body) {
-  OrderedSceneJson out{{"name", body.name}};
-  for (const auto& [kind, name] : kKinds) {
-    if (kind == body.kind) out["kind"] = name;
-  }
+  OrderedSceneJson out{{"name", body.name}, {"kind", kBodyKindWords.of(body.kind)}};
   if (!body.colour.empty()) out["colour"] = body.colour;
   if (body.moves) out["moves"] = true;
   if (body.on) out["on"] = *body.on;
@@ -168,14 +155,9 @@ class SceneReader {
   void read_body(const SceneJson& json, const std::string& what, std::size_t bodies,
                  RecordedBody& body) {
     if (const auto* kind = base::json_member(json, "kind")) {
-      const auto word = base::json_as<std::string>(*kind).value_or("");
-      bool known = false;
-      for (const auto& [value, name] : kKinds) {
-        if (word != name) continue;
-        body.kind = value;
-        known = true;
-      }
+      const auto known = kBodyKindWords.find(base::json_as<std::string>(*kind).value_or(""));
       if (!known) fail(what + " is of no kind that there is");
+      body.kind = known.value_or(body.kind);
     }
     if (json.contains("colour")) body.colour = text(json, "colour", what);
     if (!body.colour.empty() && !is_colour(body.colour))
@@ -206,14 +188,15 @@ class SceneReader {
     for (const auto& item : *shapes) {
       RecordedShape shape;
       const SceneJson* size = nullptr;
-      for (const auto& [kind, name] : kShapes) {
-        if (const auto* found = base::json_member(item, name)) {
+      for (const auto kind : {ShapeKind::kHull, ShapeKind::kBox, ShapeKind::kSphere,
+                              ShapeKind::kCylinder, ShapeKind::kCapsule}) {
+        if (const auto* found = base::json_member(item, kShapeKindWords.of(kind).data())) {
           size = found;
           shape.kind = kind;
         }
       }
-      if (const auto* hull = base::json_member(item, kHull); size == nullptr && hull != nullptr) {
-        read_hull(item, *hull, what, shape);
+      if (size != nullptr && shape.kind == ShapeKind::kHull) {
+        read_hull(item, *size, what, shape);
         shape.pose = pose(base::json_member(item, "pose"), "a shape of " + what);
         if (!why_.empty()) return;
         body.shapes.push_back(std::move(shape));

@@ -58,29 +58,6 @@ std::optional<Membership> membership(const Region& region, const Point& point) {
 
 }  // namespace
 
-std::string_view to_string(RegionAxis axis) {
-  switch (axis) {
-    case RegionAxis::kX:
-      return "x";
-    case RegionAxis::kY:
-      return "y";
-    case RegionAxis::kZ:
-      return "z";
-    case RegionAxis::kYaw:
-      return "yaw";
-    case RegionAxis::kBottom:
-      return "bottom";
-  }
-  return "";
-}
-
-std::optional<RegionAxis> axis_from(std::string_view name) {
-  for (const RegionAxis axis : kRegionAxes) {
-    if (to_string(axis) == name) return axis;
-  }
-  return std::nullopt;
-}
-
 const Region* RegionSet::find(std::string_view name) const {
   const auto found = std::find_if(regions_.begin(), regions_.end(),
                                   [&](const Region& region) { return region.name == name; });

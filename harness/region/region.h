@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
+#include "compiler/base/word_table.h"
 
 namespace parallax::harness {
 
@@ -16,9 +17,10 @@ namespace parallax::harness {
 enum class RegionAxis : std::uint8_t { kX, kY, kZ, kYaw, kBottom };
 inline constexpr std::array<RegionAxis, 5> kRegionAxes = {
     RegionAxis::kX, RegionAxis::kY, RegionAxis::kZ, RegionAxis::kYaw, RegionAxis::kBottom};
-using Point = std::array<double, kRegionAxes.size()>;   // by RegionAxis
-std::string_view to_string(RegionAxis axis);            // "x", "y", "z", "yaw", "bottom"
-std::optional<RegionAxis> axis_from(std::string_view);  // none for another word
+using Point = std::array<double, kRegionAxes.size()>;  // by RegionAxis
+inline constexpr auto kRegionAxisWords =
+    base::word_table<RegionAxis>("x", "y", "z", "yaw", "bottom");
+constexpr std::string_view to_string(RegionAxis axis) { return kRegionAxisWords.of(axis); }
 
 /// [lower, upper) or, where `closed`, [lower, upper]; metres or radians.
 struct Interval {

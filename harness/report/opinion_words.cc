@@ -86,20 +86,6 @@ CauseOpinion::Doubt CauseOpinion::doubt() const {
   return only > 0 ? Doubt::kSimulator : Doubt::kNoAnswer;
 }
 
-std::string_view to_string(CauseOpinion::Doubt doubt) {
-  switch (doubt) {
-    case CauseOpinion::Doubt::kModel:
-      return "model";
-    case CauseOpinion::Doubt::kSimulator:
-      return "simulator";
-    case CauseOpinion::Doubt::kEither:
-      return "either";
-    case CauseOpinion::Doubt::kNoAnswer:
-      break;
-  }
-  return "no-answer";
-}
-
 std::vector<CauseOpinion> opinions_by_cause(const SecondOpinion& opinion) {
   std::vector<CauseOpinion> out;
   for (const auto& one : opinion.opinions) {

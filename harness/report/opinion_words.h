@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/campaign/second_opinion.h"
 
 namespace parallax::harness {
@@ -22,8 +23,9 @@ struct CauseOpinion {
   std::int64_t trace = 0, sample = 0;  // the first
   Doubt doubt() const;
 };
-/// "model", "simulator", "either", "no-answer"
-std::string_view to_string(CauseOpinion::Doubt doubt);
+inline constexpr auto kDoubtWords =
+    base::word_table<CauseOpinion::Doubt>("model", "simulator", "either", "no-answer");
+constexpr std::string_view to_string(CauseOpinion::Doubt doubt) { return kDoubtWords.of(doubt); }
 
 /// The opinions in the order in which the causes came.
 std::vector<CauseOpinion> opinions_by_cause(const SecondOpinion& opinion);

@@ -42,18 +42,6 @@ std::string end_of(PathEnd end, const std::string& detail) {
   return fmt::format("ended by {}", to_string(end));
 }
 
-std::string_view confirmation_key(RepeatResult confirmation) {
-  switch (confirmation) {
-    case RepeatResult::kBitEqual:
-      return "bit-equal";
-    case RepeatResult::kDiffers:
-      return "differs";
-    case RepeatResult::kLost:
-      break;
-  }
-  return "lost";
-}
-
 std::string confirmation(const Discrepancy& found) {
   switch (found.confirmation) {
     case RepeatResult::kBitEqual:

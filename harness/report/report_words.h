@@ -1,10 +1,10 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/campaign/campaign_result.h"
 
 namespace parallax::harness {
@@ -17,8 +17,11 @@ std::string painted(std::string_view text, const char* color, bool is_on);
 std::string verdict_word(CampaignVerdict verdict, bool color);
 /// "the plan fails with grasp-failed"
 std::string end_of(PathEnd end, const std::string& detail);
-/// "bit-equal", "differs", "lost": as report.json has it.
-std::string_view confirmation_key(RepeatResult confirmation);
+inline constexpr auto kRepeatResultWords =
+    base::word_table<RepeatResult>("bit-equal", "differs", "lost");
+constexpr std::string_view confirmation_key(RepeatResult confirmation) {
+  return kRepeatResultWords.of(confirmation);
+}
 /// "repeated bit for bit"
 std::string confirmation(const Discrepancy& found);
 /// "stopped before all were explored"

@@ -70,15 +70,6 @@ std::vector<std::string> reported_places(const ReportJson& object, const char* n
   return out;
 }
 
-/// The enumerator up to `last` that has this word; the fallback if there is none.
-template <typename Enum, typename Word>
-Enum enumerator(std::string_view text, Enum last, const Word& word, Enum otherwise) {
-  for (int i = 0; i <= static_cast<int>(last); ++i) {
-    if (word(static_cast<Enum>(i)) == text) return static_cast<Enum>(i);
-  }
-  return otherwise;
-}
-
 std::vector<DivergingFluent> reported_fluents(const ReportJson& object, const char* name) {
   std::vector<DivergingFluent> out;
   for (const auto& entry : reported_list(object, name)) {
@@ -122,15 +113,10 @@ State reported_state(const ReportJson& object, const char* name) {
   return out;
 }
 
-PathEnd reported_end(std::string_view text) {
-  return enumerator(
-      text, PathEnd::kUnnamedObject, [](PathEnd end) { return to_string(end); }, PathEnd::kDone);
-}
-
 ExecutedPath reported_path(const ReportJson& entry) {
   ExecutedPath out;
   out.start = reported_whole(entry, "start_state");
-  out.end = reported_end(reported_text(entry, "path_end"));
+  out.end = kPathEndWords.find(reported_text(entry, "path_end")).value_or(PathEnd::kDone);
   for (const auto& one : reported_list(entry, "path")) {
     PathStep step;
     step.event = reported_text(one, "event");
@@ -151,11 +137,9 @@ ReportedDiscrepancy reported_discrepancy(const ReportJson& entry) {
   found.seed = reported<std::uint64_t>(entry, "seed");
   const auto divergence = reported_or_none<std::int64_t>(entry, "first_divergence");
   found.first_divergence = divergence.value_or(0);
-  if (reported_text(entry, "kind") == to_string(DiscrepancyKind::kTransient)) {
-    found.kind = DiscrepancyKind::kTransient;
-  }
-  found.confirmation = enumerator(reported_text(entry, "repeated"), RepeatResult::kLost,
-                                  confirmation_key, RepeatResult::kLost);
+  kDiscrepancyKindWords.take(reported_text(entry, "kind"), found.kind);
+  found.confirmation =
+      kRepeatResultWords.find(reported_text(entry, "repeated")).value_or(RepeatResult::kLost);
   const auto& cause = reported_member(entry, "cause");
   found.cause = {reported_text(cause, "text"), reported_text(cause, "reason"),
                  reported_text(cause, "event"), reported_texts(cause, "fluents")};
@@ -189,9 +173,12 @@ ReportedDiscrepancy reported_discrepancy(const ReportJson& entry) {
 }
 
 PathCount reported_count(const ReportJson& entry) {
-  return {reported_texts(entry, "events"),           reported_texts(entry, "outcomes"),
-          reported_end(reported_text(entry, "end")), reported_text(entry, "detail"),
-          reported_whole(entry, "simulations"),      reported_whole(entry, "example")};
+  return {reported_texts(entry, "events"),
+          reported_texts(entry, "outcomes"),
+          kPathEndWords.find(reported_text(entry, "end")).value_or(PathEnd::kDone),
+          reported_text(entry, "detail"),
+          reported_whole(entry, "simulations"),
+          reported_whole(entry, "example")};
 }
 
 ReportedCover reported_cover(const ReportJson& cover) {

@@ -3,36 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "harness/report/report_words.h"
 #include "harness/report/text_layout.h"
 
 namespace parallax::harness {
-namespace {
-
-constexpr std::array kStandings = {Standing::kNotAsked, Standing::kStands, Standing::kInDoubt};
-
-}  // namespace
-
-std::string_view to_string(Standing standing) {
-  switch (standing) {
-    case Standing::kNotAsked:
-      return "not-asked";
-    case Standing::kStands:
-      return "stands";
-    case Standing::kInDoubt:
-      break;
-  }
-  return "in-doubt";
-}
-
-Standing standing_named(std::string_view word) {
-  const auto* found = std::find_if(kStandings.begin(), kStandings.end(),
-                                   [&](Standing one) { return to_string(one) == word; });
-  return found == kStandings.end() ? Standing::kNotAsked : *found;
-}
-
 DiscrepancyStanding both_standings(const DiscrepancyStanding& a, const DiscrepancyStanding& b) {
   if (b.is == Standing::kNotAsked) return a;
   if (a.is == Standing::kNotAsked) return b;
@@ -80,18 +55,6 @@ std::vector<const Discrepancy*> headline_order(const CampaignResult& result) {
     return standing_of(result, *one).is != Standing::kInDoubt;
   });
   return out;
-}
-
-std::string_view headline_word(Standing standing) {
-  switch (standing) {
-    case Standing::kNotAsked:
-      return "discrepancy, not confirmed";
-    case Standing::kStands:
-      return "discrepancy, confirmed";
-    case Standing::kInDoubt:
-      break;
-  }
-  return "discrepancy in doubt";
 }
 
 std::string headline_verdict(const CampaignResult& result, bool color) {

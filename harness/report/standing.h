@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/campaign/campaign_result.h"
 #include "harness/campaign/second_opinion.h"
 
@@ -17,10 +18,13 @@ enum class Standing : std::uint8_t {
   kStands,    // it shows there as well
   kInDoubt,   // it does not
 };
-/// "not-asked", "stands", "in-doubt"
-std::string_view to_string(Standing standing);
-/// The other way round; kNotAsked for any other word.
-Standing standing_named(std::string_view word);
+inline constexpr auto kStandingWords =
+    base::word_table<Standing>("not-asked", "stands", "in-doubt");
+constexpr std::string_view to_string(Standing standing) { return kStandingWords.of(standing); }
+/// kNotAsked for a word that is none of these.
+constexpr Standing standing_named(std::string_view word) {
+  return kStandingWords.find(word).value_or(Standing::kNotAsked);
+}
 
 /// A standing with the clause that goes with it below a headline.
 struct DiscrepancyStanding {
@@ -43,9 +47,12 @@ DiscrepancyStanding standing_of(const CampaignResult& result, const Discrepancy&
 /// that none of them stands in the headline of a run that has another one.
 std::vector<const Discrepancy*> headline_order(const CampaignResult& result);
 
-/// The name of a discrepancy in a headline: "discrepancy, not confirmed", "discrepancy, confirmed",
-/// "discrepancy in doubt".
-std::string_view headline_word(Standing standing);
+/// The name of a discrepancy in a headline.
+inline constexpr auto kStandingHeadlines = base::word_table<Standing>(
+    "discrepancy, not confirmed", "discrepancy, confirmed", "discrepancy in doubt");
+constexpr std::string_view headline_word(Standing standing) {
+  return kStandingHeadlines.of(standing);
+}
 
 /// The verdict of a run in its colour, as its headline has it: of a discrepancy with its standing.
 std::string headline_verdict(const CampaignResult& result, bool color);

@@ -5,30 +5,6 @@
 
 namespace parallax::harness {
 
-std::string_view to_string(RareEventMethod method) {
-  return method == RareEventMethod::kSplitting ? "splitting" : "importance";
-}
-
-std::string_view to_string(RareEventEnd end) {
-  switch (end) {
-    case RareEventEnd::kEstimated:
-      return "estimated";
-    case RareEventEnd::kUnreached:
-      return "not-reached";
-    case RareEventEnd::kFlat:
-      return "flat";
-    case RareEventEnd::kUnresolved:
-      return "not-resolved";
-    case RareEventEnd::kLost:
-      return "lost";
-    case RareEventEnd::kInvalid:
-      return "invalid-starts";
-    case RareEventEnd::kStopped:
-      break;
-  }
-  return "stopped";
-}
-
 std::int64_t least_runs(RareEventMethod method) {
   return method == RareEventMethod::kSplitting ? 3500 : 1000;
 }

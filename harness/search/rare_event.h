@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/search/search_history.h"
 
 namespace parallax::harness {
@@ -16,8 +17,11 @@ enum class RareEventMethod : std::uint8_t {
   kImportance,  // importance sampling from a fitted law, mixed with the law of starts
   kSplitting,   // adaptive multilevel splitting
 };
-/// "importance", "splitting"
-std::string_view to_string(RareEventMethod method);
+inline constexpr auto kRareEventMethodWords =
+    base::word_table<RareEventMethod>("importance", "splitting");
+constexpr std::string_view to_string(RareEventMethod method) {
+  return kRareEventMethodWords.of(method);
+}
 
 struct RareEventOptions {
   RareEventMethod method = RareEventMethod::kImportance;
@@ -36,8 +40,9 @@ enum class RareEventEnd : std::uint8_t {
   kInvalid,     // hardly any start is valid
   kStopped,     // by the caller
 };
-/// "estimated", "not-reached", "flat", "not-resolved", "lost", "invalid-starts", "stopped"
-std::string_view to_string(RareEventEnd end);
+inline constexpr auto kRareEventEndWords = base::word_table<RareEventEnd>(
+    "estimated", "not-reached", "flat", "not-resolved", "lost", "invalid-starts", "stopped");
+constexpr std::string_view to_string(RareEventEnd end) { return kRareEventEndWords.of(end); }
 
 struct RareEventResult {
   RareEventEnd end = RareEventEnd::kEstimated;

@@ -3,11 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/search/search_history.h"
 
 namespace parallax::harness {
@@ -33,10 +32,10 @@ enum class StrategyKind : std::uint8_t {
   kDescent,              // steps of local affine models to where these predict a discrepancy
   kPortfolio,            // all of them, which share what was tried
 };
-/// "uniform", "sobol", "boundary", "cross-entropy", "expected-improvement", "descent", "portfolio"
-std::string_view to_string(StrategyKind kind);
-std::span<const std::string_view> strategy_names();
-std::optional<StrategyKind> strategy_kind(std::string_view name);
+inline constexpr auto kSearchStrategies =
+    base::word_table<StrategyKind>("uniform", "sobol", "boundary", "cross-entropy",
+                                   "expected-improvement", "descent", "portfolio");
+constexpr std::string_view to_string(StrategyKind kind) { return kSearchStrategies.of(kind); }
 
 /// The most that a run can be asked for; with more, other methods answer.
 inline constexpr std::int64_t kMaxSearchRuns = 10'000;

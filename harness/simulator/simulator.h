@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/recording/recorded_scene.h"
 
 namespace parallax::harness {
@@ -34,9 +35,13 @@ enum class SimStatus : std::uint8_t {
   kUnsupported,
   kLost,
 };
-std::string_view to_string(SimStatus status);
+inline constexpr auto kSimStatusWords = base::word_table<SimStatus>(
+    "ok", "failed", "truncated", "invalid_start", "unsupported", "lost");
+constexpr std::string_view to_string(SimStatus status) { return kSimStatusWords.of(status); }
 /// kUnsupported for a word that is not in the protocol.
-SimStatus sim_status_from(std::string_view word);
+constexpr SimStatus sim_status_from(std::string_view word) {
+  return kSimStatusWords.find(word).value_or(SimStatus::kUnsupported);
+}
 
 /// The motion since the last request, packed (motion_stream.h), where motion is recorded.
 struct RecordedMotion {

@@ -120,18 +120,6 @@ double pad_friction(const WorldSpec& spec, const BodySpec& body) {
 
 }  // namespace
 
-std::string_view to_string(GrippedForm form) {
-  switch (form) {
-    case GrippedForm::kCylinder:
-      return "cylinder";
-    case GrippedForm::kRing:
-      return "ring";
-    case GrippedForm::kOther:
-      break;
-  }
-  return "other";
-}
-
 void widen_by_action(const WorldSpec& spec, std::string_view controller, const State& arguments,
                      std::map<std::string, GripRange>& ranges) {
   const auto squeeze_n = action_squeeze_n(controller, arguments);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/simulator/simulator.h"
 #include "harness/world/world_spec.h"
 
@@ -18,8 +19,9 @@ enum class GrippedForm : std::uint8_t {
   kRing,   // walls round a hollow, such as `ring` of a scenario makes
   kOther,  // boxes, hulls and meshes, of which none slipped
 };
-/// "cylinder", "ring", "other"
-std::string_view to_string(GrippedForm form);
+inline constexpr auto kGrippedFormWords =
+    base::word_table<GrippedForm>("cylinder", "ring", "other");
+constexpr std::string_view to_string(GrippedForm form) { return kGrippedFormWords.of(form); }
 
 /// A grip that an engine is known to let slip although it holds twice what it has to.
 struct DoubtfulGrip {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/world/convex_hull.h"
 
 namespace parallax::harness {
@@ -217,9 +218,8 @@ struct MobileRobotSpec {
 
 /// The engine that steps a world.
 enum class EngineKind : std::uint8_t { kOde, kMujoco };
-inline std::string_view to_string(EngineKind kind) {
-  return kind == EngineKind::kMujoco ? "mujoco" : "ode";
-}
+inline constexpr auto kEngineWords = base::word_table<EngineKind>("ode", "mujoco");
+constexpr std::string_view to_string(EngineKind kind) { return kEngineWords.of(kind); }
 
 /// Everything the engine needs; pure data, read from the scenario's `world` section.
 struct WorldSpec {

@@ -26,18 +26,6 @@ namespace parallax::runtime {
 
 using compiler::AtomKind;
 
-std::string_view to_string(Exploration exploration) {
-  switch (exploration) {
-    case Exploration::kStopped:
-      return "stopped";
-    case Exploration::kCompleteUpToBound:
-      return "complete up to bound";
-    case Exploration::kAllTracesExplored:
-      return "all traces explored";
-  }
-  return {};
-}
-
 PlanEnumerator::PlanEnumerator(SolverSession& session, const PlanEnumeratorOptions& options)
     : session_(&session),
       options_(options),

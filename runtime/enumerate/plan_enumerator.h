@@ -4,10 +4,10 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "runtime/enumerate/path_admission.h"
 #include "runtime/enumerate/trace_source.h"
 #include "runtime/session/solver_session.h"
@@ -22,7 +22,11 @@ enum class Exploration : std::uint8_t {
   kCompleteUpToBound,  // there are longer executions than the horizon admits
   kAllTracesExplored,  // a solver call proved that no execution is left
 };
-std::string_view to_string(Exploration exploration);
+inline constexpr auto kExplorationWords =
+    base::word_table<Exploration>("stopped", "complete up to bound", "all traces explored");
+constexpr std::string_view to_string(Exploration exploration) {
+  return kExplorationWords.of(exploration);
+}
 
 struct PlanEnumeratorOptions {
   /// Every prefix that ends in a hit is a trace, not only the one up to the first hit.

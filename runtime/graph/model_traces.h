@@ -2,16 +2,14 @@
 
 #include <gmpxx.h>
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/graph/component_traces.h"
 #include "runtime/graph/graph_paths.h"
@@ -30,15 +28,8 @@ enum class Strategy : std::uint8_t {
   kComponents,  // counted by components, each trace found by its number
 };
 
-inline constexpr std::array<std::pair<Strategy, std::string_view>, 7> kStrategyNames = {{
-    {Strategy::kAuto, "auto"},
-    {Strategy::kSearch, "search"},
-    {Strategy::kBlocking, "blocking"},
-    {Strategy::kGuarded, "guarded"},
-    {Strategy::kTree, "tree"},
-    {Strategy::kGraph, "graph"},
-    {Strategy::kComponents, "components"},
-}};
+inline constexpr auto kStrategyNames = base::word_table<Strategy>(
+    "auto", "search", "blocking", "guarded", "tree", "graph", "components");
 
 struct TraceQuery {
   Distinct distinct = Distinct::kObservable;

@@ -1,15 +1,14 @@
 #pragma once
 
-#include <array>
 #include <compare>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "compiler/base/result.h"
+#include "compiler/base/word_table.h"
 #include "tools/app/recorded_run.h"
 
 namespace parallax::tools {
@@ -23,8 +22,8 @@ enum class CoverageGroup : std::uint8_t {
   kAxioms,  // effect axioms, preconditions, triggers
   kTraces,
 };
-inline constexpr std::array<std::string_view, 7> kCoverageGroups = {
-    "performs", "branches", "handlers", "retries", "events", "axioms", "traces"};
+inline constexpr auto kCoverageGroups = base::word_table<CoverageGroup>(
+    "performs", "branches", "handlers", "retries", "events", "axioms", "traces");
 
 /// Something that can be exercised, by where it stands.
 struct CoverageKey {

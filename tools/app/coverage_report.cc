@@ -27,10 +27,6 @@ std::vector<const Entry*> entries_of(const Coverage& coverage, CoverageGroup gro
   return out;
 }
 
-std::string_view name_of(CoverageGroup group) {
-  return kCoverageGroups[static_cast<std::size_t>(group)];
-}
-
 /// A name in a tracefile ends at a comma or the end of the line.
 std::string plain(std::string text) {
   std::replace_if(
@@ -59,8 +55,8 @@ void add_group(const Coverage& coverage, CoverageGroup group, std::string& out) 
     if (entry->second.traces > 0) ++in_traces;
     has_traces = has_traces || entry->second.traces.has_value();
   }
-  out += fmt::format("  {:<10}{} of {} simulated", name_of(group), entries.size() - missed.size(),
-                     entries.size());
+  out += fmt::format("  {:<10}{} of {} simulated", kCoverageGroups.of(group),
+                     entries.size() - missed.size(), entries.size());
   if (has_traces && group != CoverageGroup::kTraces)
     out += fmt::format(", {} in traces", in_traces);
   out += missed.empty() ? "\n" : "; not simulated:\n";
@@ -244,7 +240,7 @@ std::string coverage_json(const Coverage& coverage) {
     out[std::string(name)] = nlohmann::ordered_json::array();
   }
   for (const auto& entry : coverage.items) {
-    out[std::string(name_of(entry.first.group))].push_back(json_of(entry));
+    out[std::string(kCoverageGroups.of(entry.first.group))].push_back(json_of(entry));
   }
   for (const auto* name : {"never_shown", "not_in_model"}) {
     out[name] = nlohmann::ordered_json::array();

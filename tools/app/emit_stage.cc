@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "compiler/asp/asp_export.h"
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/word_table.h"
 #include "compiler/cnf/encoder.h"
 #include "compiler/ground/grounder.h"
 #include "compiler/sema/check.h"
@@ -22,34 +22,9 @@
 namespace parallax::tools {
 namespace {
 
-std::string_view word(compiler::TokenKind kind) {
-  switch (kind) {
-    case compiler::TokenKind::kName:
-      return "name";
-    case compiler::TokenKind::kNumber:
-      return "number";
-    case compiler::TokenKind::kOperator:
-      return "operator";
-    case compiler::TokenKind::kOpenParen:
-    case compiler::TokenKind::kCloseParen:
-    case compiler::TokenKind::kOpenBracket:
-    case compiler::TokenKind::kCloseBracket:
-    case compiler::TokenKind::kOpenBrace:
-    case compiler::TokenKind::kCloseBrace:
-      return "bracket";
-    case compiler::TokenKind::kComma:
-      return "comma";
-    case compiler::TokenKind::kPeriod:
-      return "period";
-    case compiler::TokenKind::kColon:
-      return "colon";
-    case compiler::TokenKind::kStatementLine:
-      return "statement";
-    case compiler::TokenKind::kEnd:
-      return "end";
-  }
-  return "?";
-}
+constexpr auto kTokenWords = base::word_table<compiler::TokenKind>(
+    "name", "number", "operator", "bracket", "bracket", "bracket", "bracket", "bracket", "bracket",
+    "comma", "period", "colon", "statement", "end");
 
 void append_tokens(base::FileId id, Context& context, std::string& out) {
   const auto& file = context.files()[id];
@@ -62,7 +37,7 @@ void append_tokens(base::FileId id, Context& context, std::string& out) {
     auto text = file.text({id, token.begin, token.end});
     while (!text.empty() && compiler::is_blank(text.back())) text.remove_suffix(1);
     const auto place = file.position(token.begin);
-    out += fmt::format("{}:{} {} {}\n", place.line, place.column, word(token.kind), text);
+    out += fmt::format("{}:{} {} {}\n", place.line, place.column, kTokenWords.of(token.kind), text);
     if (statement) {
       lexer.skip_statement();
     } else {

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "compiler/base/codes/files.h"
+#include "compiler/base/word_table.h"
 #include "harness/campaign/journal.h"
 #include "harness/config/suite_manifest.h"
 
@@ -48,33 +49,9 @@ std::string beginning_of(const std::string& path) {
   return text;
 }
 
-std::string_view what_it_is(FileKind kind) {
-  switch (kind) {
-    case FileKind::kUnknown:
-      return "a file";
-    case FileKind::kModel:
-      return "a model";
-    case FileKind::kScenario:
-      return "a scenario";
-    case FileKind::kManifest:
-      return "a manifest of cases";
-    case FileKind::kPlan:
-      return "a plan";
-    case FileKind::kBinding:
-      return "a binding table";
-    case FileKind::kCompiled:
-      return "a compiled model";
-    case FileKind::kTraces:
-      return "a list of traces";
-    case FileKind::kProof:
-      return "a proof";
-    case FileKind::kRun:
-      return "the folder of a run";
-    case FileKind::kBinary:
-      return "binary data";
-  }
-  return "";
-}
+constexpr auto kFileKindWords = base::word_table<FileKind>(
+    "a file", "a model", "a scenario", "a manifest of cases", "a plan", "a binding table",
+    "a compiled model", "a list of traces", "a proof", "the folder of a run", "binary data");
 
 /// The command that takes files of this kind.
 std::string what_takes(FileKind kind, const std::string& path) {
@@ -137,7 +114,7 @@ base::Status expect_kind(const std::string& path, std::initializer_list<FileKind
       kind == FileKind::kUnknown || std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
   if (fits) return base::Unit{};
   return context.sink()
-      .error_about(codes::kWrongKindOfFile, path, what_it_is(kind), wanted)
+      .error_about(codes::kWrongKindOfFile, path, kFileKindWords.of(kind), wanted)
       .help(what_takes(kind, path));
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/base/result.h"
+#include "compiler/base/word_table.h"
 #include "tools/app/context.h"
 #include "tools/app/recorded_run.h"
 #include "tools/app/watch.h"
@@ -14,8 +15,11 @@
 namespace parallax::tools {
 
 enum class MonitorVerdict : std::uint8_t { kConsistent, kInconsistent, kUndecided };
-/// "consistent", "inconsistent", "undecided"
-std::string_view to_string(MonitorVerdict verdict);
+inline constexpr auto kMonitorVerdictWords =
+    base::word_table<MonitorVerdict>("consistent", "inconsistent", "undecided");
+constexpr std::string_view to_string(MonitorVerdict verdict) {
+  return kMonitorVerdictWords.of(verdict);
+}
 
 /// The first place of a log that the model does not admit, or from which on nothing is claimed.
 struct MonitorPlace {

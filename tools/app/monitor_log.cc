@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstring>
 #include <map>
 #include <unordered_map>
@@ -319,18 +318,6 @@ bool take_admission(Watch& watch, Admission admission, const MonitorPlace& place
     result.undecided_because = watch.belief().undecided_because();
   }
   return false;
-}
-
-std::string_view to_string(MonitorVerdict verdict) {
-  switch (verdict) {
-    case MonitorVerdict::kConsistent:
-      return "consistent";
-    case MonitorVerdict::kInconsistent:
-      return "inconsistent";
-    case MonitorVerdict::kUndecided:
-      return "undecided";
-  }
-  return {};
 }
 
 MonitorResult monitor_log(Watch& watch, int fd, const std::string& name, Context& context,

@@ -26,9 +26,7 @@ runtime::TraceQuery query_of(const SearchOptions& options, const Context& contex
   runtime::TraceQuery query;
   query.distinct =
       options.distinct == "all" ? runtime::Distinct::kAll : runtime::Distinct::kObservable;
-  for (const auto& [strategy, name] : runtime::kStrategyNames) {
-    if (name == options.strategy) query.strategy = strategy;
-  }
+  runtime::kStrategyNames.take(options.strategy, query.strategy);
   query.wanted = options.sample > 0 ? 0 : options.limit;
   query.stop = &context.stop();
   query.jobs = options.jobs;

@@ -21,7 +21,7 @@ struct CalibrateOptions {
 };
 
 int serve_synthetic(const CalibrateOptions& options) {
-  harness::SyntheticSimulator simulator({harness::synthetic_kind(options.serve).value(),
+  harness::SyntheticSimulator simulator({harness::kSyntheticWords.find(options.serve).value(),
                                          options.probability, options.calibration.seed,
                                          options.draws, true});
   return harness::serve(simulator, STDIN_FILENO, STDOUT_FILENO) == 0 ? 0 : 5;
@@ -82,8 +82,7 @@ Command calibrate_command() {
       "The tables of docs/statistics.md are from the first one. Its second part writes much: with\n"
       "TMPDIR in memory it takes half an hour, else hours.\n"
       "Exit codes: 0 each criterion errs as rarely as it says, 1 one does not, 4 interrupted.");
-  std::vector<std::string> criteria,
-      simulators(harness::kSyntheticWords.begin(), harness::kSyntheticWords.end());
+  std::vector<std::string> criteria;
   for (const auto& one : harness::calibrated_criteria(0.99, 0.05)) criteria.push_back(one.name);
   command.option("--loops", calibration.loops, "Loops of each cell in process")
       .check(WholeNumber{0, 10'000'000})
@@ -109,10 +108,10 @@ Command calibrate_command() {
       .list(ListForm::kOneEachTime);
   command.option("--simulator", options->simulators, "Only these simulators")
       .list(ListForm::kOneEachTime)
-      .check(OneOf{simulators});
+      .check(one_of(harness::kSyntheticWords));
   command
       .option("--serve", options->serve, "Be one of the simulators, on standard input and output")
-      .check(OneOf{simulators});
+      .check(one_of(harness::kSyntheticWords));
   command.option("--probability", options->probability, "Of a run of --serve to go wrong")
       .check(FiniteNumber{0.0, 1.0});
   command.option("--draws", options->draws, "The file by whose size --serve counts its own draws")

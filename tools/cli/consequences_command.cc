@@ -5,6 +5,7 @@
 
 #include "compiler/base/codes/files.h"
 #include "compiler/base/json.h"
+#include "compiler/base/word_table.h"
 #include "compiler/base/words.h"
 #include "tools/app/consequences.h"
 #include "tools/app/scenario_model.h"
@@ -26,22 +27,8 @@ struct ConsequencesOptions {
   std::string observed;
 };
 
-const char* extent_word(Extent extent) {
-  switch (extent) {
-    case Extent::kAll:
-      return "always";
-    case Extent::kSome:
-      return "sometimes";
-    case Extent::kNone:
-      return "never";
-    case Extent::kAbsent:
-      return "absent";
-    case Extent::kNotAll:  // is in no list
-    case Extent::kUndecided:
-      break;
-  }
-  return "undecided";
-}
+constexpr auto kExtentWords =
+    base::word_table<Extent>("never", "sometimes", "always", "undecided", "absent", "undecided");
 
 std::string because(const compiler::CompiledModel& model, const ConsequenceFact& fact) {
   std::string out;
@@ -98,12 +85,12 @@ ordered_json json_of(const compiler::CompiledModel& model, const ModelConsequenc
   ordered_json counts = {
       {"always", 0}, {"sometimes", 0}, {"never", 0}, {"absent", 0}, {"undecided", 0}};
   for (const auto& fact : found.facts) {
-    auto& count = counts[extent_word(fact.extent)];
+    auto& count = counts[kExtentWords.of(fact.extent)];
     count = count.get<std::int64_t>() + 1;
     ordered_json entry = {{"time", fact.time},
                           {"atom", fact.happens ? "Happens" : "HoldsAt"},
                           {"name", fact.name},
-                          {"in", extent_word(fact.extent)}};
+                          {"in", kExtentWords.of(fact.extent)}};
     if (fact.axioms) {
       auto axioms = ordered_json::array();
       for (const auto origin : *fact.axioms) {

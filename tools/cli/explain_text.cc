@@ -6,6 +6,7 @@
 
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/json.h"
+#include "compiler/base/word_table.h"
 #include "compiler/base/words.h"
 #include "harness/report/text_layout.h"
 
@@ -46,17 +47,8 @@ std::string claim(const runtime::MinimalSets& found, const SetOptions& options) 
                      std::max<std::size_t>(found.lower_bound, 1));
 }
 
-const char* proof_word(ProofVerdict verdict) {
-  switch (verdict) {
-    case ProofVerdict::kAccepted:
-      return "checked";
-    case ProofVerdict::kRejected:
-      return "not accepted";
-    case ProofVerdict::kNotFinished:
-      return "not checked";
-  }
-  return "";
-}
+constexpr auto kProofVerdictWords =
+    base::word_table<ProofVerdict>("checked", "not accepted", "not checked");
 
 /// The observations that the sets contradict.
 std::string observed_text(const ObservedRun* run, bool verbose = true) {
@@ -90,9 +82,10 @@ std::string contradiction_head(const runtime::MinimalSets& found, const SetOptio
 std::string contradiction_text(const compiler::CompiledModel& model, std::size_t number,
                                const Contradiction& set, Instances shown,
                                const std::string& words) {
-  auto out = fmt::format("set {}: {} (proof {}{})\n", number,
-                         base::counted(set.axioms.size(), "axiom"), proof_word(set.proof),
-                         set.instances_minimal ? "" : "; instances not minimal: stopped");
+  auto out =
+      fmt::format("set {}: {} (proof {}{})\n", number, base::counted(set.axioms.size(), "axiom"),
+                  kProofVerdictWords.of(set.proof),
+                  set.instances_minimal ? "" : "; instances not minimal: stopped");
   if (!words.empty()) out += harness::wrapped("  ", words, 2);
   for (const auto& axiom : set.axioms) {
     const auto& origin = model.origins[axiom.origin];
@@ -144,7 +137,7 @@ ordered_json contradictions_document(const compiler::CompiledModel& model,
                         {"instances", axiom.instances}});
     }
     list.push_back({{"size", set.axioms.size()},
-                    {"proof", proof_word(set.proof)},
+                    {"proof", kProofVerdictWords.of(set.proof)},
                     {"instances_minimal", set.instances_minimal},
                     {"axioms", std::move(axioms)}});
   }
@@ -179,19 +172,8 @@ ordered_json state_rule_json(const harness::StateRule& rule) {
           {"clean_inside", rule.clean_inside},       {"clean", rule.clean}};
 }
 
-const char* role_word(Difference::Role role) {
-  switch (role) {
-    case Difference::Role::kFirst:
-      return "first";
-    case Difference::Role::kFollows:
-      return "follows";
-    case Difference::Role::kSameAction:
-      return "same-action";
-    case Difference::Role::kFurther:
-      return "further";
-  }
-  return "";
-}
+constexpr auto kRoleWords =
+    base::word_table<Difference::Role>("first", "follows", "same-action", "further");
 
 }  // namespace
 
@@ -218,7 +200,7 @@ std::string run_contradictions_json(const RecordedDiscrepancy& found,
                            {"timepoint", found.parting->after},
                            {"predicted", !difference.observed},
                            {"observed", difference.observed},
-                           {"role", role_word(difference.role)}});
+                           {"role", kRoleWords.of(difference.role)}});
   }
   document["differences"] = std::move(differences);
   const auto& finding = cause.finding;

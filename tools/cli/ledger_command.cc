@@ -433,7 +433,7 @@ Command ledger_command() {
       .folder();
   command.option("--ledger", options->ledger, "The file").show_default().file({"yaml"});
   command.option("--status", options->status, "list: only these")
-      .check(OneOf{{"open", "repaired", "accepted"}});
+      .check(one_of(harness::kLedgerStatusWords));
   command.option("--in", options->in, "status repaired: the revision");
   command.option("--because", options->because, "status accepted: the reason");
   command.option("--revision", options->revision,

@@ -88,26 +88,19 @@ struct RunOptions {
 void apply(const RunOptions& options, harness::Scenario& scenario) {
   auto& criterion = scenario.criterion;
   if (!options.criterion.empty()) {
-    criterion.kind = harness::CriterionKind::kPaper;
+    criterion.kind =
+        harness::kCriterionWords.find(options.criterion).value_or(harness::CriterionKind::kPaper);
     if (options.criterion == "paper-literal") criterion.paper = harness::paper_literal();
     if (options.criterion == "paper-repaired") criterion.paper = harness::paper_repaired();
   }
-  for (const auto kind : {harness::CriterionKind::kCleanRuns, harness::CriterionKind::kAnytime,
-                          harness::CriterionKind::kClopperPearson}) {
-    if (options.criterion == to_string(kind)) criterion.kind = kind;
-  }
-  for (const auto family : {harness::Family::kPerTrace, harness::Family::kAllTraces}) {
-    if (options.family == to_string(family)) criterion.family = family;
-  }
+  harness::kFamilyWords.take(options.family, criterion.family);
   apply(options.judging, scenario);
   if (options.confidence > 0) criterion.confidence_level = options.confidence;
-  for (const auto one : {harness::Starts::kUniform, harness::Starts::kGuided}) {
-    if (options.starts == to_string(one)) scenario.starts = one;
-  }
+  harness::kStartsWords.take(options.starts, scenario.starts);
   if (options.until_covered) scenario.until_covered = true;
   if (options.epsilon > 0) criterion.epsilon = options.epsilon;
   if (options.search >= 0) scenario.search.runs = options.search;
-  if (const auto kind = harness::strategy_kind(options.strategy)) scenario.search.strategy = *kind;
+  harness::kSearchStrategies.take(options.strategy, scenario.search.strategy);
   if (options.max_runs > 0) scenario.limits.max_runs = options.max_runs;
   if (options.max_traces > 0) scenario.limits.max_traces = options.max_traces;
 }
@@ -131,10 +124,7 @@ harness::CampaignOptions campaign_options(const RunOptions& options, const Scena
     campaign.run_dir =
         options.resume ? newest_run_folder(options.scenario) : default_run_folder(options.scenario);
   }
-  for (const auto mode : {harness::RecordMode::kNone, harness::RecordMode::kDiscrepancies,
-                          harness::RecordMode::kAll}) {
-    if (options.record == to_string(mode)) campaign.record = mode;
-  }
+  harness::kRecordModes.take(options.record, campaign.record);
   std::error_code error;
   campaign.start_folder = std::filesystem::current_path(error).string();
   campaign.scenario_hash = loaded.sources_hash;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <optional>
 #include <utility>
 
 #include "compiler/base/codes/files.h"
@@ -48,10 +47,7 @@ base::Result<std::unique_ptr<OpinionOfRun>> OpinionOfRun::of(const OpinionOption
   if (options.other.empty()) return std::unique_ptr<OpinionOfRun>();
   std::unique_ptr<OpinionOfRun> out(new OpinionOfRun(options, loaded, invocation));
   out->other_.scenario.starts = harness::Starts::kUniform;
-  std::optional<EngineKind> engine;
-  for (const auto one : {EngineKind::kOde, EngineKind::kMujoco}) {
-    if (options.other == to_string(one)) engine = one;
-  }
+  const auto engine = harness::kEngineWords.find(options.other);
   const auto chosen = engine ? out->choose_engine(*engine) : out->choose_command();
   if (!chosen) return invocation.sink().already_reported();
   return out;

@@ -17,16 +17,6 @@
 #include "tools/cli/limits.h"
 
 namespace parallax::tools {
-namespace {
-
-std::vector<std::string> strategy_names() {
-  std::vector<std::string> names;
-  for (const auto& [strategy, name] : runtime::kStrategyNames) names.emplace_back(name);
-  return names;
-}
-
-}  // namespace
-
 Option& add_model_options(OptionTable& command, ModelOptions& options) {
   const UnderHeading heading(command, "Model");
   auto& models = command
@@ -116,11 +106,8 @@ void add_judging_options(OptionTable& command, JudgingOptions& options) {
 }
 
 void apply(const JudgingOptions& options, harness::Scenario& scenario) {
-  using harness::Comparison;
   if (!options.match.empty()) scenario.match_model = options.match == "model";
-  for (const auto comparison : {Comparison::kEveryStep, Comparison::kFinal}) {
-    if (options.compare == to_string(comparison)) scenario.compare = comparison;
-  }
+  harness::kComparisons.take(options.compare, scenario.compare);
 }
 
 void add_cubes_option(OptionTable& command, std::int64_t& jobs) {
@@ -148,7 +135,7 @@ void add_search_options(OptionTable& command, SearchOptions& options) {
       .option("--strategy", options.strategy,
               "auto, search, graph, components, tree, guarded or blocking")
       .details("The traces and their order are the same, only the time differs.")
-      .check(OneOf{strategy_names()})
+      .check(one_of(runtime::kStrategyNames))
       .show_default();
   command.option("--order", options.order, "canonical, or any: as the solver finds them")
       .details(

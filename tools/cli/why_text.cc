@@ -4,6 +4,7 @@
 #include <set>
 
 #include "compiler/base/json.h"
+#include "compiler/base/word_table.h"
 #include "runtime/explain/clause_text.h"
 #include "tools/cli/explain_text.h"
 
@@ -41,27 +42,8 @@ class WhyText {
 
 constexpr std::size_t kShownEvents = 4;
 
-const char* kind_word(WhyKind kind) {
-  switch (kind) {
-    case WhyKind::kStated:
-      return "stated";
-    case WhyKind::kEffect:
-      return "effect";
-    case WhyKind::kInertia:
-      return "inertia";
-    case WhyKind::kAxiom:
-      return "axiom";
-    case WhyKind::kCompletion:
-      return "completion";
-    case WhyKind::kForced:
-      return "forced";
-    case WhyKind::kChosen:
-      return "chosen";
-    case WhyKind::kUndecided:
-      return "undecided";
-  }
-  return "";
-}
+constexpr auto kWhyKindWords = base::word_table<WhyKind>(
+    "stated", "effect", "inertia", "axiom", "completion", "forced", "chosen", "undecided");
 
 /// `Filled(cup) holds`, `Pour(cup) does not happen`.
 std::string WhyText::state(Literal literal) const {
@@ -203,7 +185,8 @@ std::string WhyText::json(const FactExplanation& explanation) const {
   };
   auto list = ordered_json::array();
   for (const auto& step : explanation.steps) {
-    ordered_json entry = {{"fact", clauses_.literal(step.fact)}, {"why", kind_word(step.kind)}};
+    ordered_json entry = {{"fact", clauses_.literal(step.fact)},
+                          {"why", kWhyKindWords.of(step.kind)}};
     if (step.kind == WhyKind::kInertia) entry["since"] = step.since;
     if (step.origin) entry["axiom"] = place(model_.origins[*step.origin]);
     entry["premises"] = names(step.premises);

@@ -82,9 +82,7 @@ int serve_scenario(const WorkerOptions& options, Invocation& invocation) {
   if (options.elsewhere) {
     return serve_elsewhere(options, {*std::move(scenario), {}, {}, hash}, invocation);
   }
-  for (const auto one : {harness::EngineKind::kOde, harness::EngineKind::kMujoco}) {
-    if (options.engine == to_string(one)) scenario->world.engine = one;
-  }
+  harness::kEngineWords.take(options.engine, scenario->world.engine);
   if (options.half_step) scenario->world.solver.timestep_s /= 2.0;
   harness::GuardedSimulator simulator(scenario->world);
   return harness::serve(simulator, STDIN_FILENO, STDOUT_FILENO) == 0 ? 0 : kPeerGone;
@@ -99,7 +97,7 @@ Command worker_command() {
   command.option("scenario", options->scenario).required().file({"yaml"});
   command.option("--scenario-hash", options->hash);
   command.option("--engine", options->engine, "Simulate with this engine")
-      .check(OneOf{{"ode", "mujoco"}});
+      .check(one_of(harness::kEngineWords));
   command.flag("--half-step", options->half_step, "Simulate with half the scenario's step");
   command
       .flag("--elsewhere", options->elsewhere,

@@ -60,7 +60,7 @@ RuleOutcome not_weaker(const SettingChange& change) {
   return RuleOutcome::kUndecided;
 }
 
-bool is_axis(const std::string& key) { return harness::axis_from(key).has_value(); }
+bool is_axis(const std::string& key) { return harness::kRegionAxisWords.find(key).has_value(); }
 
 /// Bounds may move inwards, and regions may go; a bound that goes opens the region.
 RuleOutcome not_wider(const SettingChange& change) {

@@ -374,18 +374,6 @@ class ScenarioLearner {
 
 }  // namespace
 
-std::string_view to_string(LearnRound::Kind kind) {
-  switch (kind) {
-    case LearnRound::Kind::kPlan:
-      return "plan";
-    case LearnRound::Kind::kTraces:
-      return "traces";
-    case LearnRound::Kind::kSequences:
-      return "sequences";
-  }
-  return "";
-}
-
 base::Result<LearnResult> learn(
     const LearnOptions& options,
     const std::function<base::Result<harness::SimulatorFactory>(const ScenarioModel&)>&

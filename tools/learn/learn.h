@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/base/result.h"
+#include "compiler/base/word_table.h"
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/sample_runner.h"
 #include "tools/app/context.h"
@@ -38,7 +39,9 @@ struct LearnRound {
   std::size_t axioms = 0;   // about events, of the model that it ran with
   std::size_t changed = 0;  // of them and of the next model's: those that only one of them has
 };
-std::string_view to_string(LearnRound::Kind kind);  // "plan", "traces", "sequences"
+inline constexpr auto kLearnRoundWords =
+    base::word_table<LearnRound::Kind>("plan", "traces", "sequences");
+constexpr std::string_view to_string(LearnRound::Kind kind) { return kLearnRoundWords.of(kind); }
 
 struct LearnResult {
   std::string model;        // text

@@ -1,6 +1,5 @@
 #include "tools/mutate/judged_mutants.h"
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <sstream>
@@ -23,16 +22,6 @@ std::string key_of(const Mutant& mutant) {
   return base::sha256_hex(mutant.file + '\0' + mutant.text);
 }
 
-std::optional<MutantOutcome> mutant_outcome_of(const std::string& text) {
-  constexpr std::array kAll = {MutantOutcome::kNoticed, MutantOutcome::kUnnoticed,
-                               MutantOutcome::kEquivalent, MutantOutcome::kInvalid,
-                               MutantOutcome::kUnknown};
-  for (const auto outcome : kAll) {
-    if (to_string(outcome) == text) return outcome;
-  }
-  return std::nullopt;
-}
-
 /// Decodes a line; none if it is half written or not a judgement.
 std::optional<std::pair<std::string, MutantJudgement>> read_line(const std::string& line) {
   const auto json = base::parse_ordered_json(line);
@@ -41,8 +30,8 @@ std::optional<std::pair<std::string, MutantJudgement>> read_line(const std::stri
     const auto at = json.find(name);
     return at != json.end() && at->is_string() ? at->get<std::string>() : std::string();
   };
-  const auto outcome = mutant_outcome_of(text("outcome"));
-  if (!outcome || text("mutant").empty()) return std::nullopt;
+  const auto outcome = kMutantOutcomeWords.find(text("outcome"));
+  if (!outcome || *outcome == MutantOutcome::kOpen || text("mutant").empty()) return std::nullopt;
   MutantJudgement out{*outcome, text("by"), text("why"), text("told_in")};
   const auto gained = json.find("gained");
   out.gained = gained != json.end() && gained->is_boolean() && gained->get<bool>();

@@ -14,24 +14,6 @@ namespace parallax::tools {
 
 namespace fs = std::filesystem;
 
-std::string_view to_string(MutantOutcome outcome) {
-  switch (outcome) {
-    case MutantOutcome::kOpen:
-      return "open";
-    case MutantOutcome::kNoticed:
-      return "noticed";
-    case MutantOutcome::kUnnoticed:
-      return "unnoticed";
-    case MutantOutcome::kEquivalent:
-      return "equivalent";
-    case MutantOutcome::kInvalid:
-      return "invalid";
-    case MutantOutcome::kUnknown:
-      return "unknown";
-  }
-  return "";
-}
-
 namespace {
 
 std::string first_error_of(const base::DiagnosticSink& sink) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "tools/mutate/cpu_watch.h"
 #include "tools/mutate/suite_files.h"
 #include "tools/suite/scratch_copy.h"
@@ -25,7 +26,11 @@ enum class MutantOutcome : std::uint8_t {
   kInvalid,     // it does not compile
   kUnknown,     // a limit came first
 };
-std::string_view to_string(MutantOutcome outcome);
+inline constexpr auto kMutantOutcomeWords = base::word_table<MutantOutcome>(
+    "open", "noticed", "unnoticed", "equivalent", "invalid", "unknown");
+constexpr std::string_view to_string(MutantOutcome outcome) {
+  return kMutantOutcomeWords.of(outcome);
+}
 
 struct MutantJudgement {
   MutantOutcome outcome = MutantOutcome::kOpen;

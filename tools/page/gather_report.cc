@@ -10,34 +10,6 @@
 
 namespace parallax::tools {
 
-const char* to_string(PageVerdict verdict) {
-  switch (verdict) {
-    case PageVerdict::kClean:
-      return "clean";
-    case PageVerdict::kDiscrepancy:
-      return "discrepancy";
-    case PageVerdict::kLost:
-      return "lost";
-    case PageVerdict::kNotJudged:
-      break;
-  }
-  return "not judged";
-}
-
-const char* to_string(SampleOrigin origin) {
-  switch (origin) {
-    case SampleOrigin::kDrawn:
-      return "drawn";
-    case SampleOrigin::kChosen:
-      return "chosen start";
-    case SampleOrigin::kSearch:
-      return "search";
-    case SampleOrigin::kFurther:
-      break;
-  }
-  return "made afterwards";
-}
-
 std::string sample_name(std::int64_t trace, std::int64_t sample) {
   return fmt::format("{}.{}", trace, sample);
 }

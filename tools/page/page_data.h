@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/base/word_table.h"
 #include "harness/campaign/campaign_result.h"
 #include "harness/confidence/criterion_spec.h"
 #include "harness/report/run_report.h"
@@ -291,9 +292,11 @@ struct PageData {
 
 /// "2.4"
 std::string sample_name(std::int64_t trace, std::int64_t sample);
-/// "clean", "discrepancy", "lost", "not judged"
-const char* to_string(PageVerdict verdict);
-/// "drawn", "chosen start", "search", "made afterwards"
-const char* to_string(SampleOrigin origin);
+inline constexpr auto kPageVerdictWords =
+    base::word_table<PageVerdict>("clean", "discrepancy", "lost", "not judged");
+constexpr std::string_view to_string(PageVerdict verdict) { return kPageVerdictWords.of(verdict); }
+inline constexpr auto kSampleOriginWords =
+    base::word_table<SampleOrigin>("drawn", "chosen start", "search", "made afterwards");
+constexpr std::string_view to_string(SampleOrigin origin) { return kSampleOriginWords.of(origin); }
 
 }  // namespace parallax::tools

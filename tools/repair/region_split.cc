@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -248,7 +247,7 @@ class SplitSearch {
       if (!holds || harness::with_arguments(inside->body, fluent) != half.body) continue;
       half.beside = binding;
       const auto* region = inside->region_of(fluent, mapping.regions());
-      const auto axis = harness::axis_from(half.item);
+      const auto axis = harness::kRegionAxisWords.find(half.item);
       if (region != nullptr && axis && region->on(*axis)) half.region = region->name;
       return;
     }

@@ -67,7 +67,7 @@ Value random_value(ObservationReader::Kind kind, const std::string& name,
   const auto& regions = mapping.regions().regions();
   const auto& region = regions[below(regions.size())];
   const auto dot = name.rfind('.');
-  const auto axis = harness::axis_from(name.substr(dot + 1));
+  const auto axis = harness::kRegionAxisWords.find(name.substr(dot + 1));
   const auto& bound = axis ? region.on(*axis) : std::nullopt;
   double value = static_cast<double>(below(1000)) / 250.0 - 2.0;
   if (bound && below(4) != 0) {

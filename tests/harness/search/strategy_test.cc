@@ -48,8 +48,8 @@ std::size_t runs_until_found(const bench::SearchWorld& world, SearchStrategy& st
 }
 
 TEST_CASE("search: names of strategies and back") {
-  for (const auto kind : kAll) CHECK(strategy_kind(to_string(kind)) == kind);
-  CHECK_FALSE(strategy_kind("sobel"));
+  for (const auto kind : kAll) CHECK(kSearchStrategies.find(to_string(kind)) == kind);
+  CHECK_FALSE(kSearchStrategies.find("sobel"));
 }
 
 TEST_CASE("search: whatever the answers, points are in the cube, and follow from the seed") {
