@@ -1,6 +1,5 @@
 // Poses and transforms with frames (cl-transforms-stamped, cram-tf), and what only the robot knows
 // of them.
-#include <cmath>
 #include <optional>
 #include <variant>
 

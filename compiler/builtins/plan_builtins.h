@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 #include "compiler/builtins/designator_links.h"
 #include "compiler/builtins/plan_value.h"

@@ -1,6 +1,5 @@
 // Vectors, rotations, poses and transforms: made from parts and taken apart (cl-transforms,
 // cl-transforms-stamped).
-#include <string>
 #include <utility>
 #include <variant>
 

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "compiler/base/ascii.h"
 #include "compiler/builtins/builtin_call.h"

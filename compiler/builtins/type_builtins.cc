@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <cstdint>
 #include <map>
 #include <optional>
-#include <string>
 #include <string_view>
 
 #include "compiler/builtins/builtin_call.h"

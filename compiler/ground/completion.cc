@@ -16,7 +16,6 @@
 #include "compiler/ground/completion.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "compiler/formula/formula.h"
 #include "compiler/ground/old_clauses.h"

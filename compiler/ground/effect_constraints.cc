@@ -14,7 +14,6 @@
 #include "compiler/ground/effect_constraints.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
 
 #include "compiler/base/codes/grounding.h"

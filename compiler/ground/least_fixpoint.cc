@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <deque>
-#include <span>
 #include <unordered_map>
 
 namespace parallax::compiler {

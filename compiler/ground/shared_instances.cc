@@ -3,7 +3,6 @@
 #include <set>
 #include <string>
 #include <tuple>
-#include <vector>
 
 #include "compiler/base/codes/grounding.h"
 

@@ -1,5 +1,4 @@
 // Functions and macros of a form's own: flet, labels, macrolet.
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -1,6 +1,5 @@
 // The extended `loop`. Its variables lie on the stack from the first clause to the last one; at the
 // top of each round every `for` ends the loop or sets its variable, then the other clauses follow.
-#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>

@@ -1,5 +1,4 @@
 // Types as conditions, and the forms of Common Lisp for errors.
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>

@@ -1,5 +1,4 @@
 #include <string>
-#include <vector>
 
 #include "compiler/interpreter/form_compiler.h"
 #include "compiler/interpreter/function_calls.h"

@@ -2,7 +2,6 @@
 
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "compiler/base/diagnostic.h"
 #include "compiler/sema/typed_model.h"

@@ -1,7 +1,5 @@
 #include "compiler/lint/lint_context.h"
 
-#include <cstdint>
-
 #include "compiler/syntax/lexer.h"
 
 namespace parallax::compiler {

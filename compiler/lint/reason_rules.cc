@@ -1,9 +1,6 @@
-#include <algorithm>
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "compiler/base/codes/names.h"
 #include "compiler/lint/rules.h"

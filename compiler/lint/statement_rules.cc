@@ -1,7 +1,5 @@
-#include <cstddef>
 #include <map>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>

@@ -1,10 +1,8 @@
 #include "compiler/lisp/lisp_library.h"
 
 #include <algorithm>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "compiler/base/diagnostic.h"
 #include "compiler/lisp/lisp_reader.h"

@@ -1,7 +1,6 @@
 #include "compiler/reference/model_expander.h"
 
 #include <algorithm>
-#include <set>
 
 #include "compiler/base/ground_name.h"
 

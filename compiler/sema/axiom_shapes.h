@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "compiler/base/diagnostic.h"
 #include "compiler/sema/typed_model.h"

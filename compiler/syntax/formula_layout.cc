@@ -1,7 +1,6 @@
 #include "compiler/syntax/formula_layout.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "compiler/syntax/precedence.h"
 

@@ -6,7 +6,6 @@
 // that made others before, and by a simulator that was started for it. Neither is a sample, and
 // nothing is counted. Cost: two simulations and one start of the simulator.
 
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>

@@ -2,9 +2,7 @@
 
 // Only harness/config/*.cc include this header.
 
-#include <cstdint>
 #include <map>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>

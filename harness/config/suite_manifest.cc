@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <map>
-#include <system_error>
 
 #include "compiler/base/ascii.h"
 #include "compiler/base/codes/scenarios.h"

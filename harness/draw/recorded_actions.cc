@@ -5,7 +5,6 @@
 #include <cmath>
 #include <memory>
 #include <set>
-#include <string_view>
 #include <variant>
 
 #include "harness/recording/scene_json.h"

@@ -19,7 +19,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "harness/engine/ode_engine.h"
 #include "harness/engine/ode_rest.h"

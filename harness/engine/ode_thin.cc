@@ -10,7 +10,6 @@
 #include <ode/ode.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "harness/engine/ode_engine.h"
 

@@ -13,7 +13,6 @@
 #include "harness/kinematics/chain_search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "harness/kinematics/inverse.h"

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "compiler/base/ascii.h"
 #include "compiler/base/codes/scenarios.h"

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
 #include "compiler/base/json.h"

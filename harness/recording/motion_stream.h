@@ -80,10 +80,9 @@ class MotionCursor {
   std::size_t byte() const { return at_; }
 
   double time_s() const { return static_cast<double>(time_) * kFrameTime_s; }
-  const std::vector<Pose>& poses() const { return poses_; }          // by moving body
-  const std::vector<std::uint8_t>& grips() const { return grips_; }  // by body, then gripper
-  const std::vector<std::size_t>& moved() const { return moved_; }   // moving bodies, ascending
-  bool grips_changed() const { return !gripped_.empty(); }
+  const std::vector<Pose>& poses() const { return poses_; }             // by moving body
+  const std::vector<std::uint8_t>& grips() const { return grips_; }     // by body, then gripper
+  const std::vector<std::size_t>& moved() const { return moved_; }      // moving bodies, ascending
   const std::vector<std::size_t>& gripped() const { return gripped_; }  // in grips(), ascending
 
  private:

@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "harness/robot/controller.h"
 #include "harness/robot/tool_path.h"

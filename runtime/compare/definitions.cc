@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <tuple>
 #include <vector>
 
 #include "runtime/graph/unit_values.h"

@@ -12,8 +12,6 @@
 
 #include "runtime/consequences/backbone.h"
 
-#include <algorithm>
-
 namespace parallax::runtime {
 namespace {
 

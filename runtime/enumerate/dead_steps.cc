@@ -13,7 +13,6 @@
 #include "runtime/enumerate/dead_steps.h"
 
 #include <optional>
-#include <string>
 
 namespace parallax::runtime {
 namespace {

@@ -4,7 +4,6 @@
 #include <array>
 #include <map>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "compiler/artifact/extended_model.h"

@@ -2,7 +2,6 @@
 
 #include <gmpxx.h>
 
-#include <compare>
 #include <map>
 #include <string>
 #include <unordered_map>

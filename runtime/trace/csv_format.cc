@@ -1,7 +1,5 @@
 #include "runtime/trace/csv_format.h"
 
-#include <algorithm>
-
 #include "compiler/base/shown_text.h"
 #include "compiler/base/words.h"
 #include "runtime/trace/open_atoms.h"

@@ -147,7 +147,7 @@ void note_model(const JsonValue& root, TraceFileHead& head) {
 
 /// Takes the closing line off the list. False, reported, if it does not fit to it.
 bool take_summary(TraceFileHead& head, const base::SourceFiles& files, base::DiagnosticSink& sink) {
-  const auto last = JsonDocument::parse(head.traces.back().source, files, sink);
+  const auto last = JsonDocument::parse(head.traces.back(), files, sink);
   if (!last) return false;
   note_model(last->root(), head);
   // A single ITF document is no list.
@@ -179,22 +179,22 @@ base::Result<TraceFileHead> open_trace_file(base::FileId file, const base::Sourc
   }
   TraceFileHead head;
   if (lines.size() > 1 && !first_line_is_whole(files.text(lines.front()))) {
-    head.traces.push_back({{file, 0, size}, true});
+    head.traces.push_back({file, 0, size});
   } else {
-    for (const auto& line : lines) head.traces.push_back({line, false});
+    head.traces = lines;
   }
   if (!take_summary(head, files, sink)) return sink.already_reported();
   if (!head.model && !head.traces.empty()) {  // ITF says it in each trace
-    const auto first = JsonDocument::parse(head.traces.front().source, files, sink);
+    const auto first = JsonDocument::parse(head.traces.front(), files, sink);
     if (!first) return sink.already_reported();
     note_model(first->root(), head);
   }
   return head;
 }
 
-base::Result<ClaimedTrace> read_trace(const TracePlace& place, std::int64_t default_number,
+base::Result<ClaimedTrace> read_trace(const base::SourceRange& place, std::int64_t default_number,
                                       const base::SourceFiles& files, ClaimReader& reader) {
-  const auto document = JsonDocument::parse(place.source, files, reader.sink());
+  const auto document = JsonDocument::parse(place, files, reader.sink());
   if (!document) return reader.sink().already_reported();
   const auto root = document->root();
   if (!root.is(JsonKind::kObject)) return reader.unexpected("the object of a trace", root);

@@ -10,15 +10,9 @@
 
 namespace parallax::runtime {
 
-/// Where a trace stands in a file, and the facts known before it is read.
-struct TracePlace {
-  base::SourceRange source;
-  bool whole_file = false;  // one ITF document over several lines
-};
-
 /// Description of a trace file before its traces are read.
 struct TraceFileHead {
-  std::vector<TracePlace> traces;  // in order
+  std::vector<base::SourceRange> traces;  // in order
   /// The model that the traces were made from (`model_hash`), and the place in the file that says
   /// so.
   std::optional<std::string> model;
@@ -35,7 +29,7 @@ base::Result<TraceFileHead> open_trace_file(base::FileId file, const base::Sourc
 
 /// Reads one trace and checks its names against the vocabulary of the model: E6103 for unknown
 /// names. Only the first error is reported. Traces without a number get `default_number`.
-base::Result<ClaimedTrace> read_trace(const TracePlace& place, std::int64_t default_number,
+base::Result<ClaimedTrace> read_trace(const base::SourceRange& place, std::int64_t default_number,
                                       const base::SourceFiles& files, ClaimReader& reader);
 
 }  // namespace parallax::runtime

@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "compiler/base/shown_text.h"
 #include "runtime/explain/clause_text.h"

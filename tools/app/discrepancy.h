@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "compiler/base/result.h"
 #include "harness/campaign/journal.h"

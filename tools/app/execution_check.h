@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "compiler/base/result.h"
 #include "harness/sampling/sampler.h"

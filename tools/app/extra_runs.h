@@ -5,7 +5,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "compiler/artifact/symbol_table.h"
 #include "compiler/base/result.h"

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <memory>
-#include <utility>
 
 #include "harness/campaign/loop_judge.h"
 #include "harness/campaign/loop_stream.h"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <ctime>
 #include <mutex>
 #include <thread>
 #include <vector>

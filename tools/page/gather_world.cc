@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <set>
 
 #include "compiler/base/ground_name.h"

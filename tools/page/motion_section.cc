@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/json.h"
