@@ -9,7 +9,6 @@
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
-#include "tools/cli/merge_shards.h"
 #include "tools/cli/shared_options.h"
 #include "tools/cli/suite_history_option.h"
 #include "tools/cli/suite_options.h"
@@ -18,12 +17,58 @@
 #include "tools/suite/result_cache.h"
 #include "tools/suite/suite_case.h"
 #include "tools/suite/suite_loop.h"
+#include "tools/suite/suite_merge.h"
 #include "tools/suite/suite_record.h"
 #include "tools/suite/suite_summary.h"
 #include "tools/suite/unused_goldens.h"
 
 namespace parallax::tools {
 namespace {
+
+/// `suite --merge`: reports from the results of shards what one whole suite would have reported;
+/// returns the exit code.
+int merge_shards(const SuiteOptions& options, Invocation& invocation) {
+  auto& sink = invocation.sink();
+  const auto quarantine = quarantine_of(options, invocation);
+  if (!options.out_given && !base::check_unnamed_output(options.out, ".", "--out", sink)) return 0;
+  const auto lock = base::FolderLock::claim(options.out, sink);
+  if (!lock) return 0;
+  auto merged = merge_suites(options.merge, sink);
+  if (!quarantine || !merged || !may_write(options, invocation) ||
+      !may_append(options, invocation)) {
+    return 0;
+  }
+  for (const auto& folder : options.merge) {
+    std::error_code error;
+    if (!std::filesystem::equivalent(folder, options.out, error)) continue;
+    sink.error_about(codes::kUsage, options.out,
+                     "--out: the merged results would replace those of a shard");
+    return 0;
+  }
+  const auto suite = merged->identity;
+  StoredResults stored{suite, {}};
+  const std::vector<bool> none(merged->cases.size(), false);
+  SuiteRecord record(std::move(merged->cases), none, options.out, options.junit, std::move(stored),
+                     *quarantine);
+  for (std::size_t i = 0; i < merged->results.size(); ++i) {
+    const auto& result = merged->results[i];
+    if (result.outcome != Outcome::kPassed) {
+      invocation.remark(line_of(record.cases()[i], result));
+    }
+    record.finish(i, std::move(merged->results[i]));
+  }
+  for (const auto& folder : merged->lost) {
+    invocation.remark(fmt::format("{} has no results that can be read",
+                                  (std::filesystem::path(folder) / kResultsFile).string()));
+  }
+  for (const auto& shard : merged->missing) {
+    invocation.remark(fmt::format("shard {0} is missing: run it with --shard {0} and merge again",
+                                  to_string(shard)));
+  }
+  speak_of_quarantine(record, true, invocation);
+  append_to_history(record, suite, options, invocation);
+  return conclude(record, options, invocation);
+}
 
 std::string environment(const std::string& name) {
   const char* value = std::getenv(name.c_str());
@@ -381,8 +426,7 @@ Command suite_command() {
               "MB that the cases at the same time may need together, by what they took before")
       .check(WholeNumber{16, 10'000'000});
   add_mutate_options(command, options->mutants);
-  return {std::move(command),
-          [options](Invocation& invocation) { return run_suite(*options, invocation); }};
+  return command_of(std::move(command), options, run_suite);
 }
 
 }  // namespace parallax::tools
