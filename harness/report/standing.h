@@ -21,7 +21,7 @@ enum class Standing : std::uint8_t {
 inline constexpr auto kStandingWords =
     base::word_table<Standing>("not-asked", "stands", "in-doubt");
 constexpr std::string_view to_string(Standing standing) { return kStandingWords.of(standing); }
-/// kNotAsked for a word that is none of these.
+/// kNotAsked for any other word.
 constexpr Standing standing_named(std::string_view word) {
   return kStandingWords.find(word).value_or(Standing::kNotAsked);
 }

@@ -239,8 +239,9 @@ void check_model(const TextModel& text, Seen& seen) {
     CAPTURE(std::string(format));
     const auto first = listed(compilation, Strategy::kBlocking, format);
     REQUIRE(first.has_value());
-    for (const auto& [strategy, name] : runtime::kStrategyNames) {
+    for (const auto name : runtime::kStrategyNames) {
       CAPTURE(std::string(name));
+      const auto strategy = *runtime::kStrategyNames.find(name);
       const auto other = listed(compilation, strategy, format);
       if (!other) continue;
       CHECK(*other == *first);
