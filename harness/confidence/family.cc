@@ -103,8 +103,8 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
       level_text(worst.confidence_level), of_traces, percent_up(epsilon),
       starts_text(region, drawn, rejected),
       comparison == Comparison::kFinal ? "in the last state" : "at any step",
-      single_state_text(drawn.initial, epsilon), clean,
-      base::agreed(clean, "run", "runs"), runs, lost_text, kSupposition);
+      single_state_text(drawn.initial, epsilon), clean, base::agreed(clean, "run", "runs"), runs,
+      lost_text, kSupposition);
   if (!scope.completeness.empty()) text += "; " + scope.completeness;
   if (scope.split_initial) {
     text += "; each initial state that leads to the same events counts as a trace";

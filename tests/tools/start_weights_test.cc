@@ -81,8 +81,7 @@ TEST_CASE("start weights: each state comes as often as its weight says") {
   CHECK(stream.at("start_law") == "weights");
   CHECK(stream.at("claim").get<std::string>().find(
             "4 initial states, each as likely as its weight in `start_weights` and each "
-            "tried, then ") !=
-        std::string::npos);
+            "tried, then ") != std::string::npos);
   CHECK(cli.read("out/report.txt").find("4, each as likely as its weight") != std::string::npos);
   // Without weights each is equally likely.
   cli.scenario("");

@@ -70,7 +70,8 @@ bool is_contradicted(const ProveOptions& options,
 
 std::vector<harness::SimulatedTest> simulated_tests(
     const ProveOptions& options, const ScenarioModel& loaded, const ProofTask& task,
-    const std::vector<harness::ProvableAction>& actions, const harness::GeometryCertificate& certificate) {
+    const std::vector<harness::ProvableAction>& actions,
+    const harness::GeometryCertificate& certificate) {
   if (options.simulate <= 0) return {};
   return harness::simulate_tests(loaded.scenario.world, task.layout, task.plan->sampler,
                                  options.seed, options.simulate, task.calls, actions,

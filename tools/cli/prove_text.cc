@@ -99,7 +99,8 @@ PrettyJson states_json(const harness::StartResult& about, std::size_t proved) {
 }
 
 /// "from TrolleyAt(onWay) (initial state 2 of 6)"; empty where there is one.
-std::string from_text(const harness::GeometryCertificate& certificate, const harness::StartResult& about) {
+std::string from_text(const harness::GeometryCertificate& certificate,
+                      const harness::StartResult& about) {
   if (certificate.initial_state == 0) return {};
   return fmt::format("from {} (initial state {} of {})", certificate.holds,
                      certificate.initial_state, harness::states_text(about));
@@ -178,8 +179,8 @@ std::string proof_text(const Proved& proved) {
   return text;
 }
 
-std::string check_json(const harness::GeometryCertificate& certificate, const harness::StartResult& about,
-                       const harness::CertificateCheck& result,
+std::string check_json(const harness::GeometryCertificate& certificate,
+                       const harness::StartResult& about, const harness::CertificateCheck& result,
                        const std::vector<harness::SimulatedTest>& simulated) {
   nlohmann::ordered_json document = {{"status", status_of(result)},
                                      {"confirmed", result.confirmed},
@@ -209,8 +210,8 @@ std::string check_json(const harness::GeometryCertificate& certificate, const ha
   return base::json_text(document) + "\n";
 }
 
-std::string check_text(const harness::GeometryCertificate& certificate, const harness::StartResult& about,
-                       const harness::CertificateCheck& result,
+std::string check_text(const harness::GeometryCertificate& certificate,
+                       const harness::StartResult& about, const harness::CertificateCheck& result,
                        const std::vector<harness::SimulatedTest>& simulated) {
   std::string text = fmt::format("{} boxes confirmed, {} not confirmed, {} wrong\n",
                                  result.confirmed, result.unconfirmed, result.wrong);

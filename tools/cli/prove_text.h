@@ -35,11 +35,11 @@ std::string proof_json(const Proved& proved);
 std::string proof_text(const Proved& proved);
 
 /// The result of a check: confirmed tests and their assumptions.
-std::string check_json(const harness::GeometryCertificate& certificate, const harness::StartResult& about,
-                       const harness::CertificateCheck& result,
+std::string check_json(const harness::GeometryCertificate& certificate,
+                       const harness::StartResult& about, const harness::CertificateCheck& result,
                        const std::vector<harness::SimulatedTest>& simulated);
-std::string check_text(const harness::GeometryCertificate& certificate, const harness::StartResult& about,
-                       const harness::CertificateCheck& result,
+std::string check_text(const harness::GeometryCertificate& certificate,
+                       const harness::StartResult& about, const harness::CertificateCheck& result,
                        const std::vector<harness::SimulatedTest>& simulated);
 
 }  // namespace parallax::tools
