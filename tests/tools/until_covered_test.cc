@@ -201,9 +201,15 @@ TEST_CASE("until covered: guided starts show what drawn ones hardly do; bounds a
   CHECK(guided.at("simulations").get<int>() ==
         90 + guided.at("traces").at(0).at("chosen_starts").get<int>());
   // Drawn ones show it in one of 256: here they do not, and it is rarer than 5 %.
-  const auto uniform = json_of(cli, {"run", "lamps.yaml", "--out", "uniform"});
+  const auto most = std::to_string(needed(17));
+  const auto uniform =
+      json_of(cli, {"run", "lamps.yaml", "--out", "uniform", "--max-runs", most}, 4);
   CHECK(cover_of(uniform).at("end") == "rarer than epsilon");
   CHECK(cover_of(uniform).at("executions") == needed(17));
+  // Where there is room, the state is visited, which shows it.
+  const auto visited = json_of(cli, {"run", "lamps.yaml", "--out", "visited"});
+  CHECK(cover_of(visited).at("end") == "all shown");
+  CHECK(cover_of(visited).at("executions") == needed(17));
   // Where it is to be rarer than one in 500 more is seen.
   const auto rarer = json_of(cli, {"run", "lamps.yaml", "--epsilon", "0.002", "--out", "rarer"});
   CHECK(cover_of(rarer).at("end") == "all shown");
