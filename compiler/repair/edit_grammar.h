@@ -19,7 +19,7 @@ namespace parallax::compiler {
 struct Edit {
   enum class Kind : std::uint8_t {
     kNarrow,         // `literal`, or else `text`, is added to the condition of the axiom
-    kNarrowEvent,    // ... of every axiom about what the event does
+    kNarrowEvent,    // ... of every axiom about what the event does, or about what differed of it
     kRequire,        // a new precondition: the event happens only where `literal` holds
     kDropCondition,  // the conjunct `node` of the axiom's condition goes
     kDropAxiom,      // an axiom about effects, or a precondition
@@ -71,6 +71,13 @@ struct EditScope {
     std::vector<Late> late = {};
   };
   std::vector<Step> steps;
+  /// Events of the same symbols that did what the model says, with what was seen before each.
+  struct Success {
+    std::string event;
+    std::map<std::string, bool> before;
+    friend bool operator==(const Success&, const Success&) = default;
+  };
+  std::vector<Success> successes = {};
   /// By event symbol: fluents, by symbol, and the value that they took with it in some run,
   /// wherever it happened.
   std::map<std::string, std::set<std::pair<std::string, bool>>> changed;

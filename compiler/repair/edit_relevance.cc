@@ -62,9 +62,9 @@ bool could_be(const ConditionLiteral& literal, bool value, const Values& values,
 
 /// The values of the event's arguments in the step; none where it is another event.
 std::optional<Values> bind(const std::vector<std::string>& arguments, const std::string& symbol,
-                           const EditScope::Step& step, const std::vector<std::string>& variables) {
-  if (base::symbol_of(step.event) != symbol) return std::nullopt;
-  const auto ground = arguments_of(step.event);
+                           const std::string& event, const std::vector<std::string>& variables) {
+  if (base::symbol_of(event) != symbol) return std::nullopt;
+  const auto ground = arguments_of(event);
   if (ground.size() != arguments.size()) return std::nullopt;
   Values values;
   for (std::size_t i = 0; i < ground.size(); ++i) {
@@ -85,8 +85,18 @@ bool EditRelevance::in_some_step(const ConditionLiteral& literal, bool value,
                                  const std::vector<std::string>& variables) const {
   if (scope_.more_events.contains(symbol)) return true;
   return std::any_of(scope_.steps.begin(), scope_.steps.end(), [&](const auto& step) {
-    const auto values = bind(arguments, symbol, step, variables);
+    const auto values = bind(arguments, symbol, step.event, variables);
     return values && could_be(literal, value, *values, step.before);
+  });
+}
+
+bool EditRelevance::in_some_success(const ConditionLiteral& literal,
+                                    const std::vector<std::string>& arguments,
+                                    const std::string& symbol,
+                                    const std::vector<std::string>& variables) const {
+  return std::any_of(scope_.successes.begin(), scope_.successes.end(), [&](const auto& success) {
+    const auto values = bind(arguments, symbol, success.event, variables);
+    return values && could_be(literal, true, *values, success.before);
   });
 }
 
@@ -103,7 +113,7 @@ bool EditRelevance::covers(const std::string& kind, const std::string& event,
         {is_variable ? LiteralArgument::Kind::kVariable : LiteralArgument::Kind::kConstant, text});
   }
   return std::any_of(scope_.steps.begin(), scope_.steps.end(), [&](const auto& step) {
-    const auto values = bind(of_event, event, step, of_event);
+    const auto values = bind(of_event, event, step.event, of_event);
     if (!values) return false;
     const auto pattern = atom_pattern(literal, *values);
     return std::any_of(step.differing.begin(), step.differing.end(), [&](const auto& seen) {

@@ -20,6 +20,9 @@ class EditRelevance {
   bool in_some_step(const ConditionLiteral& literal, bool value,
                     const std::vector<std::string>& arguments, const std::string& symbol,
                     const std::vector<std::string>& variables) const;
+  /// Could the literal have held in front of an event of this symbol that did what the model says?
+  bool in_some_success(const ConditionLiteral& literal, const std::vector<std::string>& arguments,
+                       const std::string& symbol, const std::vector<std::string>& variables) const;
   /// Would the effect explain what was observed of the fluent at one of the steps? `choice` are the
   /// fluent's arguments.
   bool covers(const std::string& kind, const std::string& event, const std::string& fluent,

@@ -315,10 +315,16 @@ std::string EditText::words(const std::vector<std::size_t>& chosen) const {
       case Edit::Kind::kNarrowEvent: {
         auto condition = print(*edit.literal, "time", edit.variables);
         if (edit.or_else) condition += " | " + print(*edit.or_else, "time", edit.variables);
-        out.push_back(edit.axioms.size() == 1
-                          ? fmt::format("{} only if `{}`", axiom(), condition)
+        const auto all = std::count_if(forms_.begin(), forms_.end(), [&](const AxiomForm& form) {
+          return form.kind == AxiomForm::Kind::kEffects && form.event_symbol == edit.event;
+        });
+        const auto some = std::ssize(edit.axioms);
+        out.push_back(some == 1 ? fmt::format("{} only if `{}`", axiom(), condition)
+                      : some < all
+                          ? fmt::format("`{}` does what {} of its {} axioms say only if `{}`",
+                                        event, some, all, condition)
                           : fmt::format("`{}` does what its {} axioms say only if `{}`", event,
-                                        edit.axioms.size(), condition));
+                                        some, condition));
         break;
       }
       case Edit::Kind::kRequire:

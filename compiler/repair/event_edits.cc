@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "compiler/base/ground_name.h"
@@ -21,6 +22,9 @@ class EventEdits {
     std::vector<SortedVariable> variables;
     for (std::size_t i = 0; i < names.size(); ++i) variables.push_back({names[i], sorts[i]});
     const auto axioms = effects_of(event);
+    std::vector<std::size_t> differing;
+    std::copy_if(axioms.begin(), axioms.end(), std::back_inserter(differing),
+                 [&](const auto i) { return is_about_fluents(i); });
     bool refused = false, not_possible = false;
     for (const auto& step : subject_.scope.steps) {
       if (base::symbol_of(step.event) != event) continue;
@@ -42,6 +46,15 @@ class EventEdits {
         edit.kind = Edit::Kind::kNarrowEvent;
         edit.axioms = axioms;
         edit.oddity = (refused ? 1 : 3) + oddity;
+        out_.push_back(edit);
+      }
+      // The condition may be one of these effects and not of others, which came as the model says.
+      // Where the event never did what it should, any condition would explain that.
+      const bool is_part = differing.size() > 1 && differing.size() < axioms.size();
+      if (is_part && subject_.relevance.in_some_success(literal, names, event, names)) {
+        edit.kind = Edit::Kind::kNarrowEvent;
+        edit.axioms = differing;
+        edit.oddity = (refused ? 2 : 4) + oddity;
         out_.push_back(edit);
       }
       if (refused) {

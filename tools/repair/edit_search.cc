@@ -227,6 +227,14 @@ void EditSearch::add(std::size_t number) {
   for (const auto& [fluent, holds] : evidence.states[*refused]) {
     seen.emplace(fluent, circuit_.constant(holds));
   }
+  // Fluents that were not seen there, as those of the start alone, and follow from what was.
+  guarded_.for_each_atom([&](const compiler::AtomRef& atom) {
+    if (atom.kind != AtomKind::kHoldsAt || atom.time != static_cast<Timepoint>(*refused)) return;
+    const int value = value_of(atom.literal(), values);
+    if (value != 0) {
+      seen.emplace(guarded_.fluents[atom.fluent().index()].name, circuit_.constant(value > 0));
+    }
+  });
   add_refusal(evidence, *refused, mapped(*happens(*refused)), active, seen);
 }
 

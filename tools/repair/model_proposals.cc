@@ -107,7 +107,10 @@ class ModelSearch {
         out.more_events.insert(base::symbol_of(seen.steps[t].event));
       }
     }
-    for (const auto& seen : evidence_) add_changed(seen, out);
+    for (const auto& seen : evidence_) {
+      add_changed(seen, out);
+      add_successes(seen, out);
+    }
     out.open_outcomes = mode == Mode::kOpen;
     out.open_refused = mode == Mode::kExact;
     out.alternatives = mode == Mode::kEither;
@@ -129,6 +132,22 @@ class ModelSearch {
         const auto before = seen.states[t].find(fluent);
         if (before == seen.states[t].end() || before->second == holds) continue;
         scope.changed[base::symbol_of(seen.steps[t].event)].emplace(base::symbol_of(fluent), holds);
+      }
+    }
+  }
+
+  /// Steps of the events at which runs and model part, in runs that go on as the model says.
+  static void add_successes(const Evidence& seen, EditScope& scope) {
+    for (std::size_t t = 0; t < seen.steps.size() && seen.divergence.value_or(t + 2) > t + 1; ++t) {
+      const auto symbol = base::symbol_of(seen.steps[t].event);
+      const bool is_asked =
+          std::any_of(scope.steps.begin(), scope.steps.end(),
+                      [&](const auto& at) { return base::symbol_of(at.event) == symbol; });
+      if (!is_asked || seen.steps[t].failed) continue;
+      EditScope::Success success{seen.steps[t].event, seen.states[t]};
+      const auto& known = scope.successes;
+      if (std::find(known.begin(), known.end(), success) == known.end()) {
+        scope.successes.push_back(std::move(success));
       }
     }
   }

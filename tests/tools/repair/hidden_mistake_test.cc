@@ -66,5 +66,29 @@ TEST_CASE("an effect with a condition between its variables is asked for beside 
   CHECK(cli.proposes(right, 3));
 }
 
+TEST_CASE("a precondition about a fluent that is seen at the start and at the end alone") {
+  const CliFixture cli;
+  const std::string domain =
+      "fluent Open()\nfluent Stuck()\n\nevent Pull()\nevent Push()\n\n"
+      "[time] Initiates(Pull(),Open(),time).\n[time] Terminates(Push(),Open(),time).\n";
+  cli.write("model.e", domain);
+  cli.write("truth.e", domain + "[time] Happens(Push(),time) -> !HoldsAt(Stuck(),time).\n");
+  cli.write("start.e", "!HoldsAt(Open(),0).\n");
+  cli.write("pull.lisp",
+            "(perform (an action (type pulling)))\n(perform (an action (type pushing)))\n");
+  cli.write("robot.bind",
+            "action pulling () -> Pull()  ok: Open() @t+1 else manipulation-goal-not-reached\n"
+            "action pushing () -> Push()  ok: !Open() @t+1 else manipulation-goal-not-reached\n");
+  cli.write("drawer.yaml",
+            "model: [model.e, start.e]\nsimulator: {model: truth.e}\nplan: pull.lisp\n"
+            "bind: robot.bind\nhorizon: 2\nconstraints: \"Happens(Push(),time-1)\"\n"
+            "mapping: {Stuck(): {flag: \"Stuck()\", drawn: true, compare: final}}\n");
+  json_of(cli, {"run", "drawer.yaml", "--out", "out"}, 1);
+  const auto report = json_of(cli, {"repair", "out"}, 1);
+  CAPTURE(report.dump(1));
+  CHECK(report.at("proposals").at(0).at("words") ==
+        "`Push()` can happen only if `!HoldsAt(Stuck(),time)`");
+}
+
 }  // namespace
 }  // namespace parallax::test
