@@ -8,7 +8,8 @@
 
 namespace parallax::harness {
 
-std::string wrapped(std::string_view first, std::string_view text, std::size_t indent) {
+std::string wrapped(std::string_view first, std::string_view text, std::size_t indent,
+                    std::size_t columns) {
   std::string plain(text);
   std::replace(plain.begin(), plain.end(), '\n', ' ');
   plain = base::printable(plain);
@@ -21,7 +22,7 @@ std::string wrapped(std::string_view first, std::string_view text, std::size_t i
     at = end + 1;
     if (word.empty()) continue;
     const auto width = base::count_code_points(word);
-    if (!at_start && column + 1 + width > kReportColumns) {
+    if (!at_start && column + 1 + width > columns) {
       out += '\n' + std::string(indent, ' ');
       column = indent;
       at_start = true;

@@ -8,10 +8,11 @@ namespace parallax::harness {
 
 inline constexpr std::size_t kReportColumns = 100;
 
-/// `text` broken at blanks so that no line is longer than kReportColumns; every line starts with
+/// `text` broken at blanks so that no line is longer than `columns`; every line starts with
 /// `indent` blanks, except the first, which starts with `first`. Words are never broken. Control
 /// characters become visible; a newline is a blank. Ends with a newline.
-std::string wrapped(std::string_view first, std::string_view text, std::size_t indent);
+std::string wrapped(std::string_view first, std::string_view text, std::size_t indent,
+                    std::size_t columns = kReportColumns);
 
 /// Columns padded to their widest cell, two blanks between them, no blanks at the ends of lines.
 std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t indent);

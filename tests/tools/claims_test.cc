@@ -54,7 +54,7 @@ TEST_CASE("a statistical test is not repeated until it passes") {
   cli.two_coins(1.0, 0.0, "{rate: {below: 0.2, confidence: 0.9}}");
   const auto rate = cli.parallax(suite);
   CHECK(rate.code == 1);
-  has(rate.err, "not repeated (--retry)");
+  has(rate.out, "not repeated (--retry)");
   std::filesystem::remove(cli.folder() / "tried");
   cli.two_coins(1.0, 0.0, "{verdict: no-discrepancy}");
   CHECK(cli.parallax(suite).code == 1);
@@ -63,7 +63,7 @@ TEST_CASE("a statistical test is not repeated until it passes") {
   cli.two_coins(0.0, 1.0, "{verdict: discrepancy}");
   const auto found = cli.parallax(suite);
   CHECK(found.code == 0);
-  has(found.err, "flaky: passed in attempt 2");
+  has(found.out, "flaky: passed in attempt 2");
 }
 
 TEST_CASE("bounds of rates are rounded outwards, with digits enough") {

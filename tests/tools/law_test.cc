@@ -108,13 +108,20 @@ TEST_CASE("a result of a suite is not taken over when the script of its simulato
   reported.insert(reported.end(), {"--junit", "r.xml", "--markdown", "r.md"});
   const auto open = cli.parallax(reported);
   CHECK(open.code == 4);
-  CHECK(open.out == "0 passed, 0 failed, 1 inconclusive\n");
-  CHECK(holds(open.err, "OPEN  other.yaml"));
-  CHECK(holds(cli.read("r.xml"), "errors=\"1\""));
-  CHECK(holds(cli.read("r.xml"), "type=\"inconclusive\""));
+  CHECK(holds(open.out, "OPEN  other.yaml"));
+  CHECK(open.out.ends_with("\n0 passed, 0 failed, 1 inconclusive\n"));
+  CHECK(holds(cli.read("r.xml"), "failures=\"0\" errors=\"0\" skipped=\"1\""));
+  CHECK(holds(cli.read("r.xml"), "<skipped message=\"inconclusive: the run is inconclusive"));
   CHECK(holds(cli.read("r.md"), "| inconclusive |"));
   CHECK(json_of(cli, suite, 4)["inconclusive"] == 1);
   CHECK(holds(cli.read("out/suite/results.json"), "\"outcome\": \"inconclusive\""));
+  // Neither is it a failure where another verdict is expected.
+  cli.replace("other.yaml", "max_simulations: 5", "verdict: discrepancy");
+  const auto undecided = json_of(cli, suite, 4);
+  CHECK(undecided["failed"] == 0);
+  CHECK(undecided["cases"][0]["problems"][0] == "verdict inconclusive, expected discrepancy");
+  cli.replace("other.yaml", "verdict: discrepancy", "verdict: discrepancy, max_simulations: 1");
+  CHECK(json_of(cli, suite, 1)["failed"] == 1);
 }
 
 constexpr const char* kEdgeLaw =

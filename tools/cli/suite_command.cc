@@ -1,74 +1,34 @@
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <set>
+#include <tuple>
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
 #include "compiler/base/folder_lock.h"
+#include "compiler/base/words.h"
 #include "compiler/base/write_gate.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
+#include "tools/cli/merge_shards.h"
 #include "tools/cli/shared_options.h"
 #include "tools/cli/suite_history_option.h"
 #include "tools/cli/suite_options.h"
 #include "tools/cli/suite_output.h"
+#include "tools/suite/collected_cases.h"
 #include "tools/suite/input_hashes.h"
 #include "tools/suite/result_cache.h"
 #include "tools/suite/suite_case.h"
 #include "tools/suite/suite_loop.h"
-#include "tools/suite/suite_merge.h"
 #include "tools/suite/suite_record.h"
 #include "tools/suite/suite_summary.h"
 #include "tools/suite/unused_goldens.h"
 
 namespace parallax::tools {
 namespace {
-
-/// `suite --merge`: reports from the results of shards what one whole suite would have reported;
-/// returns the exit code.
-int merge_shards(const SuiteOptions& options, Invocation& invocation) {
-  auto& sink = invocation.sink();
-  const auto quarantine = quarantine_of(options, invocation);
-  if (!options.out_given && !base::check_unnamed_output(options.out, ".", "--out", sink)) return 0;
-  const auto lock = base::FolderLock::claim(options.out, sink);
-  if (!lock) return 0;
-  auto merged = merge_suites(options.merge, sink);
-  if (!quarantine || !merged || !may_write(options, invocation) ||
-      !may_append(options, invocation)) {
-    return 0;
-  }
-  for (const auto& folder : options.merge) {
-    std::error_code error;
-    if (!std::filesystem::equivalent(folder, options.out, error)) continue;
-    sink.error_about(codes::kUsage, options.out,
-                     "--out: the merged results would replace those of a shard");
-    return 0;
-  }
-  const auto suite = merged->identity;
-  StoredResults stored{suite, {}};
-  const std::vector<bool> none(merged->cases.size(), false);
-  SuiteRecord record(std::move(merged->cases), none, options.out, options.junit, std::move(stored),
-                     *quarantine);
-  for (std::size_t i = 0; i < merged->results.size(); ++i) {
-    const auto& result = merged->results[i];
-    if (result.outcome != Outcome::kPassed) {
-      invocation.remark(line_of(record.cases()[i], result));
-    }
-    record.finish(i, std::move(merged->results[i]));
-  }
-  for (const auto& folder : merged->lost) {
-    invocation.remark(fmt::format("{} has no results that can be read",
-                                  (std::filesystem::path(folder) / kResultsFile).string()));
-  }
-  for (const auto& shard : merged->missing) {
-    invocation.remark(fmt::format("shard {0} is missing: run it with --shard {0} and merge again",
-                                  to_string(shard)));
-  }
-  speak_of_quarantine(record, true, invocation);
-  append_to_history(record, suite, options, invocation);
-  return conclude(record, options, invocation);
-}
 
 std::string environment(const std::string& name) {
   const char* value = std::getenv(name.c_str());
@@ -82,31 +42,72 @@ bool is_fast(const SuiteCase& one) {
   return scenario == nullptr || scenario->fast || one.is_broken;
 }
 
+struct Collected {
+  std::vector<SuiteCase> cases;  // those that are gone stand among them
+  std::vector<std::string> unused_goldens;
+};
+
 /// The selected cases; under --rerun-failed without those that passed last time.
-base::Result<std::vector<SuiteCase>> wanted_cases(const SuiteOptions& options,
-                                                  const StoredCases& earlier,
-                                                  Invocation& invocation) {
+base::Result<Collected> wanted_cases(const SuiteOptions& options, const StoredResults& earlier,
+                                     const Shard& shard, Invocation& invocation) {
   auto cases = find_cases(options.paths, invocation.form().allow_outside, invocation.files(),
                           invocation.sink());
   if (!cases) return invocation.sink().already_reported();
-  for (const auto& file : unused_goldens(options.paths, *cases, options.out)) {
+  Collected out;
+  out.unused_goldens = unused_goldens(options.paths, *cases, options.out);
+  for (const auto& file : out.unused_goldens) {
     invocation.remark(fmt::format("{} is a golden file of no case", file));
   }
+  std::set<std::string> names;
+  for (const auto& one : *cases) names.insert(one.name());
   std::erase_if(*cases, [&](const SuiteCase& one) {
     return one.name().find(options.only) == std::string::npos || (options.fast && !is_fast(one));
   });
-  if (cases->empty()) {
+  const auto last = last_names(earlier, options.history, [&](const SuiteSelection& suite) {
+    return suite.paths == options.paths;
+  });
+  auto removed = removed_cases(names, last, options.only, shard);
+  if (cases->empty() && removed.empty()) {
     return invocation.sink().error_about(codes::kNoCases, options.paths.front());
   }
   if (options.rerun_failed) {
     std::erase_if(*cases, [&](const SuiteCase& one) {
-      const auto at = earlier.find(one.name());
-      if (at == earlier.end()) return true;
+      const auto at = earlier.cases.find(one.name());
+      if (at == earlier.cases.end()) return true;
       const auto outcome = at->second.result.outcome;
       return outcome == Outcome::kPassed || outcome == Outcome::kSkipped;
     });
   }
-  return cases;
+  for (auto& one : removed) cases->push_back(std::move(one));
+  std::stable_sort(cases->begin(), cases->end(), [](const SuiteCase& a, const SuiteCase& b) {
+    return std::tie(a.group, a.id) < std::tie(b.group, b.id);
+  });
+  out.cases = *std::move(cases);
+  return out;
+}
+
+/// Lists what would be run. Nothing is run or written.
+int list_cases(const SuiteOptions& options, const Shard& shard, Invocation& invocation) {
+  base::DiagnosticSink unread;
+  auto earlier = read_results(options.out, options.rerun_failed ? invocation.sink() : unread);
+  if (!earlier && options.rerun_failed) return 0;
+  auto collected =
+      wanted_cases(options, earlier ? *std::move(earlier) : StoredResults{}, shard, invocation);
+  if (!collected) return 0;
+  std::erase_if(collected->cases, [&](const SuiteCase& one) { return !in_shard(one.id, shard); });
+  std::size_t removed = 0;
+  for (const auto& one : collected->cases) {
+    if (!one.is_removed) continue;
+    ++removed;
+    invocation.remark(fmt::format("{} is gone: the last suite had it", one.name()));
+  }
+  if (invocation.options().json) {
+    invocation.document(collected_document(collected->cases, collected->unused_goldens));
+  } else {
+    invocation.result(collected_text(collected->cases));
+  }
+  invocation.remark(base::counted(collected->cases.size() - removed, "case"));
+  return 0;
 }
 
 /// The ledger, if one was named.
@@ -188,6 +189,7 @@ std::string foreign_to_mutants(const SuiteOptions& options) {
   if (!options.merge.empty()) return "--merge";
   if (options.shard != "1/1") return "--shard";
   if (options.rerun_failed) return "--rerun-failed";
+  if (options.collect_only) return "--collect-only";
   if (options.update_goldens) return "--update-goldens";
   if (options.confirm) return "--confirm";
   if (!options.junit.empty()) return "--junit";
@@ -213,8 +215,8 @@ int score_mutants(const SuiteOptions& options, Invocation& invocation) {
   if (!foreign.empty()) {
     return usage_error(fmt::format("--mutate and {} exclude each other", foreign), invocation);
   }
-  const auto cases = wanted_cases(options, {}, invocation);
-  if (!cases) return 0;
+  const auto collected = wanted_cases(options, {}, Shard{}, invocation);
+  if (!collected) return 0;
   if (!check_suite_folder(options, invocation.sink())) return 0;
   if (!is_folder(options.out)) {
     invocation.sink().error_about(codes::kUsage, options.out,
@@ -231,7 +233,7 @@ int score_mutants(const SuiteOptions& options, Invocation& invocation) {
   score.jobs = options.jobs;
   score.resume = options.resume;
   if (!options.no_cache) score.cache = &cache;
-  return mutate_suite(*cases, options.mutants, std::move(score), invocation);
+  return mutate_suite(collected->cases, options.mutants, std::move(score), invocation);
 }
 
 int run_suite(const SuiteOptions& given, Invocation& invocation) {
@@ -247,6 +249,10 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
     }
     if (!options.ledger.empty()) {
       return usage_error("--ledger belongs to the suites whose results are merged", invocation);
+    }
+    if (options.collect_only) {
+      return usage_error("--collect-only lists the cases below a PATH, not those of --merge",
+                         invocation);
     }
     return merge_shards(options, invocation);
   }
@@ -275,6 +281,7 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
     invocation.remark(
         fmt::format("--shard {}: this is shard {}", options.shard, to_string(*shard)));
   }
+  if (options.collect_only) return list_cases(options, *shard, invocation);
   if (!check_suite_folder(options, sink)) return 0;
   const auto lock = base::FolderLock::claim(options.out, sink);
   if (!lock) return 0;
@@ -285,18 +292,19 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
   const auto earlier = earlier_results(options, identity, sink);
   if (!earlier) return 0;
   const auto quarantine = quarantine_of(options, invocation);
-  auto cases = wanted_cases(options, earlier->cases, invocation);
+  auto collected = wanted_cases(options, *earlier, *shard, invocation);
   const auto ledger = ledger_of(options, invocation);
-  if (!quarantine || !cases || !ledger || !may_write(options, invocation) ||
+  if (!quarantine || !collected || !ledger || !may_write(options, invocation) ||
       !may_append(options, invocation)) {
     return 0;
   }
   const auto* known = *ledger ? &**ledger : nullptr;
   std::vector<bool> skipped;
-  for (const auto& one : *cases) skipped.push_back(!in_shard(one.id, *shard));
+  for (const auto& one : collected->cases) skipped.push_back(!in_shard(one.id, *shard));
   StoredResults stored{identity, options.rerun_failed ? earlier->cases : StoredCases{}};
-  SuiteRecord record(*std::move(cases), skipped, options.out, options.junit, std::move(stored),
-                     *quarantine);
+  SuiteRecord record(std::move(collected->cases), skipped, options.out, options.junit,
+                     std::move(stored), *quarantine);
+  record.note_unused_goldens(std::move(collected->unused_goldens));
   const auto folder = cache_folder(options);
   if (!options.no_cache && !options.cache.empty() && !is_folder(folder)) {
     sink.error_about(codes::kUsage, options.cache,
@@ -305,10 +313,10 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
   }
   const ResultCache cache(folder,
                           {program_hash(), options.seed, invocation.form().allow_outside, known});
-  const auto remark = [&](const std::string& text) { invocation.remark(text); };
+  const auto voice = suite_voice(invocation);
   const bool caches = !options.no_cache && !options.update_goldens;
   const LastPasses passes(folder);
-  Reuse reuse(record, cache, passes, remark);
+  Reuse reuse(record, cache, passes, voice);
   if (options.resume) {
     reuse.resume(earlier->cases, identity.permits_more_than(earlier->identity));
   }
@@ -316,7 +324,8 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
   if (!record.save(sink)) return 0;
   auto loop = loop_options(options, caches, known, invocation);
   if (caches) loop.runner.last_passes = &passes;
-  run_open_cases(record, loop, earlier->cases, reuse, cache, passes, remark, stop_flag());
+  run_open_cases(record, loop, earlier->cases, reuse, cache, passes, voice, stop_flag());
+  tell_removed(record, voice);
   speak_of_quarantine(record, options.only.empty() && !options.fast && !options.rerun_failed,
                       invocation);
   if (known != nullptr) {
@@ -339,6 +348,7 @@ Command suite_command() {
       "  parallax suite scenarios --jobs 2\n"
       "  parallax suite scenarios --fast              without the long simulations\n"
       "  parallax suite scenarios/classics --only zoo\n"
+      "  parallax suite scenarios --collect-only      which cases are there?\n"
       "  parallax suite scenarios --shard 2/5 --junit suite.xml\n"
       "  parallax suite scenarios --launcher 'srun -n1 -c1' --jobs 32\n"
       "  parallax suite scenarios --resume            goes on where a suite was ended\n"
@@ -350,6 +360,7 @@ Command suite_command() {
   command.option("--only", options->only, "Only cases whose name (file:id) contains this");
   command.flag("--fast", options->fast,
                "Only expectations of models, and scenarios that say `fast: true`");
+  command.flag("--collect-only", options->collect_only, "List the selected cases; run nothing");
   command.heading("Results");
   command.option("--out", options->out, "Folder of the runs, made anew, and the results")
       .given(options->out_given)

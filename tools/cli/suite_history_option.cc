@@ -17,6 +17,7 @@ namespace {
 std::set<std::string> files_of(const SuiteRecord& record) {
   std::set<std::string> out;
   for (std::size_t i = 0; i < record.cases().size(); ++i) {
+    if (record.cases()[i].is_removed) continue;
     out.insert(record.cases()[i].file);
     for (const auto& input : record.results()[i].inputs) out.insert(input.path);
   }

@@ -25,6 +25,7 @@ struct SuiteOptions {
   bool force = false;
   bool rerun_failed = false, resume = false;
   bool confirm = false;
+  bool collect_only = false;
   bool no_cache = false;
   bool fast = false;
   CommandPermission commands;

@@ -1,5 +1,7 @@
 #include "tools/cli/suite_output.h"
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <set>
 
@@ -69,8 +71,31 @@ int conclude(SuiteRecord& record, const SuiteOptions& options, Invocation& invoc
     invocation.result(summary_text(record));
   }
   if (record.count(Outcome::kFailed) + record.count(Outcome::kError) > 0) return 1;
-  const auto open = record.count(Outcome::kNotFinished) + record.count(Outcome::kInconclusive);
+  const auto open = record.count(Outcome::kNotFinished) + record.count(Outcome::kInconclusive) +
+                    record.count(Outcome::kRemoved);
   return saved && open > 0 ? 4 : 0;
+}
+
+SuiteVoice suite_voice(Invocation& invocation) {
+  SuiteVoice out;
+  out.remark = [&](const std::string& text) { invocation.remark(text); };
+  out.finished = [&](const SuiteCase& one, const CaseResult& result) {
+    const bool is_remark = result.outcome == Outcome::kPassed && !result.flaky();
+    if (!is_remark && !invocation.options().json) {
+      invocation.result(line_of(one, result, invocation.color_on(STDOUT_FILENO)) + '\n');
+    } else if (!invocation.options().quiet) {
+      const bool color = invocation.color_on(STDERR_FILENO);
+      write_error(line_of(one, result, color) + '\n', {.colors = color});
+    }
+  };
+  return out;
+}
+
+void tell_removed(const SuiteRecord& record, const SuiteVoice& voice) {
+  for (std::size_t i = 0; i < record.cases().size(); ++i) {
+    const auto& one = record.cases()[i];
+    if (one.is_removed) voice.finished(one, record.results()[i]);
+  }
 }
 
 base::Result<harness::Quarantine> quarantine_of(const SuiteOptions& options,

@@ -147,6 +147,14 @@ std::string revision_of(const SuiteCase& one, const std::vector<std::string>& pa
   return base::sha256_hex(all);
 }
 
+/// The line of a case in its file; 0 if an included file has it.
+std::uint32_t line_of(const base::SourceRange& range, const std::string& file,
+                      const base::SourceFiles& files) {
+  const auto& source = files[range.file];
+  if (fs::path(source.name()).lexically_normal() != fs::path(file).lexically_normal()) return 0;
+  return source.position(range.begin).line;
+}
+
 void add_scenario(const std::string& file, harness::SuiteFileKind kind, bool allow_outside,
                   std::vector<SuiteCase>& cases, InputHashes& hashes, base::SourceFiles& files) {
   base::SourceFiles own;
@@ -159,6 +167,7 @@ void add_scenario(const std::string& file, harness::SuiteFileKind kind, bool all
   if (scenario) {
     if (!scenario->expect) return;
     out.check = *scenario->expect;
+    out.line = line_of(scenario->expect->source, file, own);
     out.command = scenario->simulator.command;
   } else {
     if (kind == harness::SuiteFileKind::kOther) return;
@@ -197,7 +206,9 @@ void add_manifest(const std::string& file, bool allow_outside, std::vector<Suite
     if (one.expect.golden) named.push_back(one.expect.golden->text);
     note_inputs(named, files);
     auto id = one.id;
+    const auto line = line_of(one.source, file, files);
     cases.push_back({file, std::move(id), file, std::move(one)});
+    cases.back().line = line;
     cases.back().revision = revision_of(cases.back(), named, hashes);
   }
 }
@@ -224,6 +235,8 @@ std::string_view to_string(Outcome outcome) {
       return "not finished";
     case Outcome::kSkipped:
       return "skipped";
+    case Outcome::kRemoved:
+      return "removed";
   }
   return "";
 }

@@ -24,6 +24,8 @@ struct SuiteCase {
   /// Hash of what the case is: its texts in the suite and the files that it names, whether or not
   /// it is run.
   std::string revision = {};
+  std::uint32_t line = 0;   // of the case in `file`, from 1; 0: another file has it
+  bool is_removed = false;  // no case any more: only the last suite had it
 
   /// Unique in a suite, and what --only looks at: `FILE`, or `FILE:ID`.
   std::string name() const { return id == file ? file : file + ':' + id; }
@@ -36,6 +38,7 @@ enum class Outcome : std::uint8_t {
   kInconclusive,  // as expected so far, but the run came to no verdict and none is expected
   kNotFinished,   // the suite ended first
   kSkipped,       // in another shard
+  kRemoved,       // the last suite had it, this one has not
 };
 std::string_view to_string(Outcome outcome);
 

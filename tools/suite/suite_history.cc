@@ -85,6 +85,7 @@ HistoryLine history_line(const SuiteRecord& record, const SuiteIdentity& suite,
   out.program = suite.program;
   for (std::size_t i = 0; i < record.cases().size(); ++i) {
     const auto& result = record.results()[i];
+    if (record.cases()[i].is_removed) continue;
     auto& one = out.cases[record.cases()[i].name()];
     one.outcome = to_string(result.outcome);
     one.verdict = result.verdict;

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <string_view>
 #include <system_error>
 #include <thread>
 
 #include "compiler/base/shown_text.h"
 #include "compiler/base/subprocess.h"
 #include "compiler/base/words.h"
+#include "harness/report/text_layout.h"
 #include "tools/suite/schedule.h"
 
 namespace parallax::tools {
@@ -30,15 +32,58 @@ Task task_of(std::size_t index, const SuiteCase& one, const StoredCases& earlier
   return task;
 }
 
+struct Mark {
+  std::string_view text, color;
+};
+
+Mark mark_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kPassed:
+      return {"ok   ", "1;32"};
+    case Outcome::kFailed:
+      return {"FAIL ", "1;31"};
+    case Outcome::kInconclusive:
+      return {"OPEN ", "1;33"};
+    case Outcome::kRemoved:
+      return {"GONE ", "1;33"};
+    case Outcome::kError:
+    case Outcome::kNotFinished:
+    case Outcome::kSkipped:
+      break;
+  }
+  return {"ERROR", "1;31"};
+}
+
+constexpr std::string_view kIndent = "       ";
+
+/// Further lines below a case. With `breaks` long sentences are broken: lines without indentation
+/// and columns.
+void append_lines(const std::string& text, bool breaks, std::string& out) {
+  auto rest = std::string_view(text);
+  while (rest.ends_with('\n')) rest.remove_suffix(1);
+  while (!rest.empty()) {
+    const auto line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    out += '\n';
+    const bool is_sentence = !line.starts_with(' ') && line.find("  ") == std::string_view::npos;
+    if (breaks && is_sentence) {
+      out += harness::wrapped(kIndent, line, kIndent.size(), kSuiteColumns);
+      out.pop_back();
+    } else {
+      out += fmt::format("{}{}", kIndent, base::shown_lines(line));
+    }
+  }
+}
+
 }  // namespace
 
-std::string line_of(const SuiteCase& one, const CaseResult& result) {
-  const auto* mark = result.outcome == Outcome::kPassed         ? "ok   "
-                     : result.outcome == Outcome::kFailed       ? "FAIL "
-                     : result.outcome == Outcome::kInconclusive ? "OPEN "
-                                                                : "ERROR";
+std::string line_of(const SuiteCase& one, const CaseResult& result, bool color) {
+  const auto mark = mark_of(result.outcome);
   const auto how = result.reused.empty() ? fmt::format("{:.1f} s", result.wall_s) : result.reused;
-  auto line = fmt::format("{} {} ({})", mark, base::printable(one.name()), how);
+  auto line =
+      color ? fmt::format("\x1b[{}m{}\x1b[0m", mark.color, mark.text) : std::string(mark.text);
+  line += ' ' + base::printable(one.name());
+  if (result.outcome != Outcome::kRemoved) line += fmt::format(" ({})", how);
   if (result.flaky()) line += fmt::format(", flaky: passed in attempt {}", result.attempts);
   for (const auto& rate : result.rates) {
     if (rate.fixed || result.outcome != Outcome::kPassed) continue;
@@ -46,16 +91,12 @@ std::string line_of(const SuiteCase& one, const CaseResult& result) {
     break;
   }
   if (!result.golden_written.empty()) {
-    line += "\n       golden file written: " + base::printable(result.golden_written);
+    line +=
+        fmt::format("\n{}golden file written: {}", kIndent, base::printable(result.golden_written));
   }
-  std::string details;
-  for (const auto& problem : result.problems) details += problem + '\n';
+  for (const auto& problem : result.problems) append_lines(problem, true, line);
   // For a case without an answer, the messages of the program take its place.
-  if (result.outcome == Outcome::kError) details += result.messages;
-  while (details.ends_with('\n')) details.pop_back();
-  if (details.empty()) return line;
-  line += "\n       ";
-  for (const char c : details) line += c == '\n' ? "\n       " : std::string(1, c);
+  if (result.outcome == Outcome::kError) append_lines(result.messages, false, line);
   return line;
 }
 
@@ -86,8 +127,8 @@ void Reuse::look_up(double verified_share) {
     }
   }
   if (damaged > 0) {
-    remark_(fmt::format("{} not what was written; not used",
-                        base::counted(damaged, "cached result is", "cached results are")));
+    voice_.remark(fmt::format("{} not what was written; not used",
+                              base::counted(damaged, "cached result is", "cached results are")));
   }
   std::stable_sort(hits.begin(), hits.end(), [](const auto& a, const auto& b) {
     return a.second.age_order < b.second.age_order;
@@ -121,23 +162,19 @@ void Reuse::verify(std::size_t i, CaseResult& result) const {
 }
 
 void Reuse::take(std::size_t i, CaseResult result) {
-  remark_(line_of(record_.cases()[i], result));
+  voice_.finished(record_.cases()[i], result);
   record_.finish(i, std::move(result));
 }
 
 void run_open_cases(SuiteRecord& record, const LoopOptions& options, const StoredCases& earlier,
                     const Reuse& reuse, const ResultCache& cache, const LastPasses& passes,
-                    const Remark& remark, const std::atomic<bool>& stop) {
+                    const SuiteVoice& voice, const std::atomic<bool>& stop) {
   std::vector<Task> tasks;
   for (std::size_t i = 0; i < record.cases().size(); ++i) {
     if (reuse.is_open(i)) tasks.push_back(task_of(i, record.cases()[i], earlier));
   }
   Schedule schedule(std::move(tasks), options.memory_mb);
   std::mutex printing;
-  const auto say = [&](const std::string& text) {
-    const std::lock_guard lock(printing);
-    remark(text);
-  };
   const auto work = [&](std::int64_t number) {
     auto runner = options.runner;
     if (options.spread) {
@@ -148,7 +185,8 @@ void run_open_cases(SuiteRecord& record, const LoopOptions& options, const Store
       if (!index) return;
       const auto& one = record.cases()[*index];
       if (!one.command.empty() && options.runner.allow_commands) {
-        say(fmt::format("{} starts `{}`", one.name(), base::command_text(one.command)));
+        const std::lock_guard lock(printing);
+        voice.remark(fmt::format("{} starts `{}`", one.name(), base::command_text(one.command)));
       }
       auto result = run_case(one, runner, stop);
       if (result.outcome != Outcome::kNotFinished) {
@@ -157,7 +195,8 @@ void run_open_cases(SuiteRecord& record, const LoopOptions& options, const Store
           (void)cache.store(one, result);
           passes.keep(one, result);
         }
-        say(line_of(one, result));
+        const std::lock_guard lock(printing);
+        voice.finished(one, result);
       }
       record.finish(*index, std::move(result));
       schedule.done(*index);

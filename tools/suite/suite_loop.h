@@ -14,17 +14,24 @@
 
 namespace parallax::tools {
 
-/// Receives lines about a running suite.
-using Remark = std::function<void(const std::string&)>;
+/// Receives what a running suite has to tell, from one thread at a time.
+struct SuiteVoice {
+  std::function<void(const std::string&)> remark;
+  std::function<void(const SuiteCase&, const CaseResult&)> finished;
+};
 
-/// A finished case in a line, what is wrong with it in further ones.
-std::string line_of(const SuiteCase& one, const CaseResult& result);
+/// A finished case in a line, what is wrong with it in further ones. Sentences are broken at
+/// kSuiteColumns; what is indented (axioms, differences of files) stays as it is. Nothing in it
+/// steers a terminal but the mark's colour.
+std::string line_of(const SuiteCase& one, const CaseResult& result, bool color = false);
+
+inline constexpr std::size_t kSuiteColumns = 80;
 
 /// Takes over earlier results of a suite's cases, and tells which cases are left to do.
 class Reuse {
  public:
-  Reuse(SuiteRecord& record, const ResultCache& cache, const LastPasses& passes, Remark remark)
-      : record_(record), cache_(cache), passes_(passes), remark_(std::move(remark)) {}
+  Reuse(SuiteRecord& record, const ResultCache& cache, const LastPasses& passes, SuiteVoice voice)
+      : record_(record), cache_(cache), passes_(passes), voice_(std::move(voice)) {}
 
   /// Takes over the results of an interrupted suite whose files have not changed. If `permits_more`
   /// than in that suite, cases without an answer are run again: that may have been refused.
@@ -44,7 +51,7 @@ class Reuse {
   SuiteRecord& record_;
   const ResultCache& cache_;
   const LastPasses& passes_;
-  Remark remark_;
+  SuiteVoice voice_;
   InputHashes hashes_;
   std::map<std::size_t, ResultCache::Hit> to_verify_;
 };
@@ -61,6 +68,6 @@ struct LoopOptions {
 /// how long they took.
 void run_open_cases(SuiteRecord& record, const LoopOptions& options, const StoredCases& earlier,
                     const Reuse& reuse, const ResultCache& cache, const LastPasses& passes,
-                    const Remark& remark, const std::atomic<bool>& stop);
+                    const SuiteVoice& voice, const std::atomic<bool>& stop);
 
 }  // namespace parallax::tools

@@ -30,10 +30,12 @@ struct CaseTally {
       return;
     }
     failures += result.outcome == Outcome::kFailed ? 1 : 0;
-    skipped += result.outcome == Outcome::kSkipped ? 1 : 0;
+    const bool is_undecided =
+        result.outcome == Outcome::kSkipped || result.outcome == Outcome::kInconclusive;
+    skipped += is_undecided ? 1 : 0;
     const bool no_answer = result.outcome == Outcome::kError ||
-                           result.outcome == Outcome::kInconclusive ||
-                           result.outcome == Outcome::kNotFinished;
+                           result.outcome == Outcome::kNotFinished ||
+                           result.outcome == Outcome::kRemoved;
     errors += no_answer ? 1 : 0;
   }
   std::string attributes() const {
@@ -42,11 +44,12 @@ struct CaseTally {
   }
 };
 
-/// `<failure message="first sentence">all of them</failure>`.
-void append_problem(std::string& out, std::string_view element, const CaseResult& result) {
+/// `<failure message="first sentence">all of them</failure>`, the message behind `lead`.
+void append_problem(std::string& out, std::string_view element, const CaseResult& result,
+                    std::string_view lead = "") {
   std::string all;
   for (const auto& problem : result.problems) all += problem + '\n';
-  const auto headline = all.substr(0, all.find('\n'));
+  const auto headline = fmt::format("{}{}", lead, all.substr(0, all.find('\n')));
   out += fmt::format("      <{0} message=\"{1}\" type=\"{2}\">{3}</{0}>\n", element,
                      xml_escaped(headline), to_string(result.outcome), xml_escaped(all));
 }
@@ -74,8 +77,13 @@ void append_case(std::string& out, const SuiteCase& one, const CaseResult& resul
       append_problem(out, "failure", result);
       break;
     case Outcome::kError:
-    case Outcome::kInconclusive:
       append_problem(out, "error", result);
+      break;
+    case Outcome::kRemoved:
+      append_problem(out, "error", result, "removed: ");
+      break;
+    case Outcome::kInconclusive:
+      append_problem(out, "skipped", result, "inconclusive: ");
       break;
     case Outcome::kNotFinished:
       if (result.problems.empty()) {
@@ -141,7 +149,7 @@ std::string to_junit(const std::vector<SuiteCase>& cases, const std::vector<Case
 bool is_quarantined(const SuiteCase& one, const CaseResult& result,
                     const harness::Quarantine& quarantine) {
   const bool bad = result.outcome == Outcome::kFailed || result.outcome == Outcome::kError ||
-                   result.outcome == Outcome::kInconclusive;
+                   result.outcome == Outcome::kInconclusive || result.outcome == Outcome::kRemoved;
   return bad && quarantine.contains(one.name());
 }
 
@@ -157,6 +165,9 @@ SuiteRecord::SuiteRecord(std::vector<SuiteCase> cases, const std::vector<bool>& 
       timestamp_(utc_now()) {
   for (std::size_t i = 0; i < cases_.size(); ++i) {
     if (skipped[i]) results_[i].outcome = Outcome::kSkipped;
+    if (!cases_[i].is_removed) continue;
+    results_[i].outcome = Outcome::kRemoved;
+    results_[i].problems = {"the last suite had this case, and it is gone"};
   }
 }
 

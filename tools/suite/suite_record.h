@@ -30,8 +30,8 @@ bool is_quarantined(const SuiteCase& one, const CaseResult& result,
 class SuiteRecord {
  public:
   /// `junit` may be empty: then no such report is written. The results are laid over `stored`,
-  /// whose identity is theirs. Cases of `skipped` (parallel to `cases`) are marked so. Call `save`
-  /// before the first case.
+  /// whose identity is theirs. Cases of `skipped` (parallel to `cases`) are marked so, and those
+  /// that are removed as such. Call `save` before the first case.
   SuiteRecord(std::vector<SuiteCase> cases, const std::vector<bool>& skipped,
               std::filesystem::path folder, std::filesystem::path junit, StoredResults stored,
               harness::Quarantine quarantine = {});
@@ -45,6 +45,9 @@ class SuiteRecord {
   std::size_t count(Outcome outcome) const;
   std::size_t quarantined() const;
   const harness::Quarantine& quarantine() const { return quarantine_; }
+  /// Golden files that no case names.
+  const std::vector<std::string>& unused_goldens() const { return unused_goldens_; }
+  void note_unused_goldens(std::vector<std::string> files) { unused_goldens_ = std::move(files); }
 
  private:
   std::vector<SuiteCase> cases_;
@@ -52,6 +55,7 @@ class SuiteRecord {
   std::filesystem::path folder_, junit_;
   StoredResults stored_;
   harness::Quarantine quarantine_;
+  std::vector<std::string> unused_goldens_;
   std::string timestamp_;  // of the beginning, ISO 8601
   std::chrono::steady_clock::time_point last_save_;
   std::mutex mutex_;

@@ -148,6 +148,9 @@ std::optional<StoredCase> case_from_json(const std::string& name, const Json& js
   read(json, "id", out.one.id);
   read(json, "group", out.one.group);
   read(json, "revision", out.one.revision);
+  std::uint64_t line = 0;
+  read(json, "line", line);
+  out.one.line = static_cast<std::uint32_t>(std::min<std::uint64_t>(line, UINT32_MAX));
   if (out.one.file.empty() || out.one.name() != name) return std::nullopt;
   return out;
 }
@@ -216,6 +219,11 @@ base::Status write_results(const fs::path& folder, StoredResults stored,
                            const std::vector<SuiteCase>& cases,
                            const std::vector<CaseResult>& results, base::DiagnosticSink& sink) {
   for (std::size_t i = 0; i < cases.size(); ++i) {
+    // It is told once: the next suite is compared with this one.
+    if (cases[i].is_removed) {
+      stored.cases.erase(cases[i].name());
+      continue;
+    }
     StoredCase one{cases[i], results[i]};
     if (results[i].outcome == Outcome::kSkipped) {
       stored.cases.try_emplace(cases[i].name(), std::move(one));
@@ -230,6 +238,7 @@ base::Status write_results(const fs::path& folder, StoredResults stored,
     item["id"] = one.one.id;
     item["group"] = one.one.group;
     item["revision"] = one.one.revision;
+    item["line"] = one.one.line;
   }
   std::error_code error;
   fs::create_directories(folder, error);

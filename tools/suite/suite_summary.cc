@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 
 #include "compiler/base/json.h"
@@ -96,6 +97,7 @@ std::string summary_text(const SuiteRecord& record) {
   append(record.count(Outcome::kError), "without an answer");
   append(record.count(Outcome::kInconclusive), "inconclusive");
   append(record.count(Outcome::kNotFinished), "not run");
+  append(record.count(Outcome::kRemoved), "removed");
   append(record.count(Outcome::kSkipped), "in other shards");
   append(record.quarantined(), "quarantined");
   append(flaky_cases(record), "flaky");
@@ -112,6 +114,7 @@ std::string summary_document(const SuiteRecord& record) {
                     {"problems", result.problems},
                     {"timing", {{"wall_s", result.wall_s}}}});
     auto& item = list.back();
+    if (record.cases()[i].line > 0) item["line"] = record.cases()[i].line;
     if (!result.golden_written.empty()) item["golden_written"] = result.golden_written;
     if (!result.reused.empty()) item["reused"] = result.reused;
     if (result.attempts > 1) item["attempts"] = result.attempts;
@@ -128,10 +131,12 @@ std::string summary_document(const SuiteRecord& record) {
                                    {"errors", record.count(Outcome::kError)},
                                    {"inconclusive", record.count(Outcome::kInconclusive)},
                                    {"not_run", record.count(Outcome::kNotFinished)},
+                                   {"removed", record.count(Outcome::kRemoved)},
                                    {"skipped", record.count(Outcome::kSkipped)},
                                    {"quarantined", record.quarantined()},
                                    {"flaky", flaky_cases(record)},
                                    {"reused", reused_cases(record)},
+                                   {"unused_goldens", record.unused_goldens()},
                                    {"cases", list}};
   return base::json_text(document) + '\n';
 }
@@ -151,6 +156,9 @@ std::string summary_markdown(const SuiteRecord& record) {
                        record.results()[i].wall_s);
   }
   if (hidden > 0) out += fmt::format("\n{} more cases are not listed.\n", hidden);
+  for (const auto& file : record.unused_goldens()) {
+    out += fmt::format("\n{} is a golden file of no case.\n", base::markdown_text(file));
+  }
   return out + narrow_passes(record);
 }
 
@@ -161,9 +169,10 @@ std::string github_annotations(const SuiteRecord& record) {
     const auto& one = record.cases()[i];
     const auto how = standing(record, i);
     const bool is_error = how == "failed" || how == "error";
-    out += fmt::format("::{} file={},title={}::{}\n", is_error ? "error" : "warning",
-                       github_text(one.file, true), github_text(how + ": " + one.id, true),
-                       github_text(reason(record, i), false));
+    out +=
+        fmt::format("::{} file={},line={},title={}::{}\n", is_error ? "error" : "warning",
+                    github_text(one.file, true), std::max(one.line, 1U),
+                    github_text(how + ": " + one.id, true), github_text(reason(record, i), false));
   }
   return out;
 }

@@ -19,8 +19,8 @@ std::string summary_document(const SuiteRecord& record);
 /// A table of the cases that need attention, for a pull request or a job's page.
 std::string summary_markdown(const SuiteRecord& record);
 
-/// Annotations that GitHub's runners show beside the files: a command line for each case that
-/// failed, gave no answer, is flaky or did not finish.
+/// Annotations that GitHub's runners show beside the lines of the cases: a command for each that
+/// failed, gave no answer, is inconclusive or flaky, did not finish or is gone.
 std::string github_annotations(const SuiteRecord& record);
 
 }  // namespace parallax::tools

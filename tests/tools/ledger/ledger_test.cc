@@ -148,7 +148,7 @@ TEST_CASE("a suite fails on what the ledger does not know, also where a discrepa
   cli.write("ledger.yaml", "discrepancies: []\n");
   const auto unknown = suite(with);
   CHECK(unknown.code == 1);
-  CHECK_MESSAGE(holds(unknown.err, "a discrepancy that the ledger does not know: 1.1: PickUp()"),
+  CHECK_MESSAGE(holds(unknown.out, "a discrepancy that the ledger does not know: 1.1: PickUp()"),
                 unknown.err);
   cli.write("ledger.yaml", known);
   CHECK(suite({"--ledger", "ledger.yaml", "--resume"}).out ==
@@ -156,7 +156,7 @@ TEST_CASE("a suite fails on what the ledger does not know, also where a discrepa
   REQUIRE(cli.ledger({"status", "wrong_model.pickup", "repaired", "--in", "77"}).code == 0);
   const auto back = suite({"--ledger", "ledger.yaml", "--resume"});
   CHECK(back.code == 1);
-  CHECK_MESSAGE(holds(back.err, "is repaired in 77, and comes back"), back.err);
+  CHECK_MESSAGE(holds(back.out, "is repaired in 77, and comes back"), back.err);
 }
 
 TEST_CASE("a verified property says which discrepancies it rests on, and which it does not") {

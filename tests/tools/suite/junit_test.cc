@@ -14,18 +14,25 @@ SuiteCase manifest_case(const std::string& id) {
 
 TEST_CASE("each outcome has its element, and the counts are of their kinds") {
   const std::vector<SuiteCase> cases = {manifest_case("a"), manifest_case("b"), manifest_case("c"),
-                                        manifest_case("d"), manifest_case("e")};
+                                        manifest_case("d"), manifest_case("e"), manifest_case("f"),
+                                        manifest_case("g")};
   const std::vector<CaseResult> results = {
-      result(Outcome::kPassed), result(Outcome::kFailed, "2 traces, expected 3 traces"),
-      result(Outcome::kError, "the program was ended by signal 11"), result(Outcome::kNotFinished),
-      result(Outcome::kSkipped)};
+      result(Outcome::kPassed),
+      result(Outcome::kFailed, "2 traces, expected 3 traces"),
+      result(Outcome::kError, "the program was ended by signal 11"),
+      result(Outcome::kNotFinished),
+      result(Outcome::kSkipped),
+      result(Outcome::kInconclusive, "no verdict"),
+      result(Outcome::kRemoved, "it is gone")};
   const auto text = to_junit(cases, results, "2026-01-01T00:00:00Z");
   CHECK(holds(
-      text, R"(<testsuites name="parallax suite" tests="5" failures="1" errors="2" skipped="1")"));
+      text, R"(<testsuites name="parallax suite" tests="7" failures="1" errors="3" skipped="2")"));
   CHECK(holds(text, R"(<failure message="2 traces, expected 3 traces" type="failed">)"));
   CHECK(holds(text, R"(<error message="the program was ended by signal 11" type="error">)"));
   CHECK(holds(text, R"(<error message="not finished" type="not finished"/>)"));
   CHECK(holds(text, R"(<skipped message="not in this shard"/>)"));
+  CHECK(holds(text, R"(<skipped message="inconclusive: no verdict" type="inconclusive">)"));
+  CHECK(holds(text, R"(<error message="removed: it is gone" type="removed">)"));
   CHECK(holds(text,
               R"(<testcase classname="m/suite.yaml" name="a" file="m/suite.yaml" time="0.000">)"));
 }

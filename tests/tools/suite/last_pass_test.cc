@@ -173,9 +173,9 @@ TEST_CASE("a pass that had no trace left, and a rate, are held against what they
   const auto result = cli.suite({"--only", "hasty"});
   CHECK(result.code == 1);
   CAPTURE(result.err);
-  CHECK(holds(result.err, "since it passed last, repository/boxes/wrong_domain.e changed"));
-  CHECK(holds(result.err, "- before/repository/boxes/wrong_domain.e:32"));
-  CHECK(holds(result.err, "repository/boxes/wrong_domain.e:10  frame axiom: Holding()"));
+  CHECK(holds(result.out, "since it passed last, repository/boxes/wrong_domain.e changed"));
+  CHECK(holds(result.out, "- before/repository/boxes/wrong_domain.e:32"));
+  CHECK(holds(result.out, "repository/boxes/wrong_domain.e:10  frame axiom: Holding()"));
 }
 
 }  // namespace

@@ -190,9 +190,9 @@ TEST_CASE("a red case says which event, fluent and axiom") {
   const auto result = cli.parallax({"suite", "two/unparks.yaml", "--junit", "r.xml"});
   CHECK(result.code == 1);
   CAPTURE(result.err);
-  CHECK(holds(result.err, "OpenDrawer(top)"));
-  CHECK(holds(result.err, "Parked()"));
-  CHECK(holds(result.err, "two/domain.e:"));
+  CHECK(holds(result.out, "OpenDrawer(top)"));
+  CHECK(holds(result.out, "Parked()"));
+  CHECK(holds(result.out, "two/domain.e:"));
   CHECK(holds(cli.read("r.xml"), "two/domain.e:"));
 }
 

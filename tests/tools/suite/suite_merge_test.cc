@@ -47,7 +47,7 @@ TEST_CASE("four shards together are the suite as one process runs it") {
   const auto result = cli.merge({"o1", "o2", "o3", "o4"}, {"--junit", "merged.xml"});
   CAPTURE(result.err);
   CHECK(result.code == 1);
-  CHECK(result.out == "19 passed, 5 failed\n");
+  CHECK(result.out.ends_with("\n19 passed, 5 failed\n"));
   CHECK(without_times(cli.read("merged.xml")) == without_times(cli.read("whole.xml")));
   // The order of the folders does not matter, and a second merge replaces the first.
   CHECK(cli.merge({"o4", "o2", "o1", "o3"}, {"--junit", "again.xml"}).code == 1);
@@ -95,7 +95,7 @@ TEST_CASE("a shard that was ended is completed by its rerun") {
   const auto rerun =
       cli.suite({"--out", "o2", "--shard", "2/4", "--no-cache", "--resume", "--json"});
   CHECK(Json::parse(rerun.out)["reused"].get<int>() > 0);
-  CHECK(cli.merge({"o1", "o2", "o3", "o4"}).out == "19 passed, 5 failed\n");
+  CHECK(cli.merge({"o1", "o2", "o3", "o4"}).out.ends_with("\n19 passed, 5 failed\n"));
 }
 
 /// Two shards in o1 and o2, of eight cases that pass.

@@ -25,7 +25,7 @@ TEST_CASE("a resumed suite runs again what has changed since") {
   cli.replace("s/lamp.e", "time 0 1", "time 0 2");
   const auto result = cli.suite({"--resume", "--no-cache"});
   CHECK(result.code == 1);
-  CHECK(result.out == "0 passed, 2 failed\n");
+  CHECK(result.out.ends_with("\n0 passed, 2 failed\n"));
 }
 
 TEST_CASE("results of another suite are not gone on with") {
@@ -151,11 +151,11 @@ TEST_CASE("what passed is not run again until a file of it changes, and says so"
   CHECK(cli.suite({"--seed", "2"}).out == "2 passed, 0 failed\n");
   // The golden file belongs to one case, the model to both.
   cli.replace("s/expected/both.txt", "> Press()", "> Pull()");
-  CHECK(cli.suite({}).out == "1 passed, 1 failed, 1 not run again\n");
+  CHECK(cli.suite({}).out.ends_with("\n1 passed, 1 failed, 1 not run again\n"));
   cli.replace("s/expected/both.txt", "> Pull()", "> Press()");
   CHECK(cli.suite({}).out == "2 passed, 0 failed, 2 not run again\n");
   cli.replace("s/suite.yaml", "traces: 1}", "traces: 2}");
-  CHECK(cli.suite({}).out == "1 passed, 1 failed, 1 not run again\n");
+  CHECK(cli.suite({}).out.ends_with("\n1 passed, 1 failed, 1 not run again\n"));
   cli.replace("s/suite.yaml", "traces: 2}", "traces: 1}");
   cli.write("s/lamp.e", std::string(kLamp) + "; a remark\n");
   CHECK(cli.suite({}).out == "2 passed, 0 failed\n");
@@ -210,8 +210,8 @@ TEST_CASE("a share of the cached passes is run all the same, and must answer the
   CHECK(cli.suite({}).out == "2 passed, 0 failed, 2 not run again\n");
   const auto caught = cli.suite({"--verify-cache", "50%"});
   CHECK(caught.code == 1);
-  CHECK(caught.out == "1 passed, 0 failed, 1 without an answer, 1 not run again\n");
-  CHECK(holds(caught.err, "are not the same bytes"));
+  CHECK(caught.out.ends_with("\n1 passed, 0 failed, 1 without an answer, 1 not run again\n"));
+  CHECK(holds(caught.out, "are not the same bytes"));
   // Each time the results that were checked longest ago are checked: the other one now.
   CHECK(cli.suite({"--verify-cache", "50%"}).code == 1);
   CHECK(cli.suite({"--verify-cache", "100%"}).code == 0);
@@ -252,7 +252,7 @@ TEST_CASE("a case in quarantine may fail, and its list must not outlive it") {
             "  - {case: 's/suite.yaml:gone', because: nobody knows}\n");
   const auto result = cli.suite({"--quarantine", "known.yaml", "--junit", "r.xml"});
   CHECK(result.code == 0);
-  CHECK(result.out == "1 passed, 0 failed, 1 quarantined\n");
+  CHECK(result.out.ends_with("\n1 passed, 0 failed, 1 quarantined\n"));
   CHECK(holds(result.err, "names s/suite.yaml:gone, which is no case"));
   CHECK(holds(cli.read("r.xml"), "quarantined: the golden file is on its way"));
   REQUIRE(cli.suite({"--update-goldens"}).code == 0);
@@ -275,7 +275,7 @@ TEST_CASE("a summary replaces a summary and nothing else") {
   const auto result = cli.suite({"--markdown", "summary.md", "--annotations", "github"});
   CHECK(result.code == 1);
   CHECK(holds(cli.read("summary.md"), "### Suite: 1 passed, 1 failed"));
-  CHECK(holds(result.err, "::error file=s/suite.yaml,title=failed%3A both::"));
+  CHECK(holds(result.err, "::error file=s/suite.yaml,line=2,title=failed%3A both::"));
   CHECK(cli.suite({"--markdown", "summary.md"}).code == 1);
 }
 

@@ -65,14 +65,16 @@ TEST_CASE("a summary in Markdown holds no markup but its own") {
 TEST_CASE("an annotation is one command, whatever the names") {
   auto one = named("a::b,c");
   one.file = "dir,with:colon%/s.yaml";
+  one.line = 7;
   const std::vector<CaseResult> results = {result(Outcome::kError, "50 % lost\nmore"),
                                            result(Outcome::kPassed), result(Outcome::kNotFinished)};
   auto record = record_of({one, named("b"), named("c")});
   fill(record, results);
   const auto text = github_annotations(record);
   CHECK(text ==
-        "::error file=dir%2Cwith%3Acolon%25/s.yaml,title=error%3A a%3A%3Ab%2Cc::50 %25 lost\n"
-        "::warning file=m/suite.yaml,title=not finished%3A c::the suite ended first\n");
+        "::error file=dir%2Cwith%3Acolon%25/s.yaml,line=7,title=error%3A a%3A%3Ab%2Cc::50 %25 "
+        "lost\n"
+        "::warning file=m/suite.yaml,line=1,title=not finished%3A c::the suite ended first\n");
 }
 
 }  // namespace
