@@ -111,6 +111,37 @@ TEST_CASE("traces of a compiled model are those of its text, byte for byte") {
   }
 }
 
+TEST_CASE("a compiled model is the same bytes wherever the checkout lies") {
+  const CliFixture cli;
+  namespace fs = std::filesystem;
+  const auto root = cli.folder();
+  for (const auto* checkout : {"a", "b/deeper"}) {
+    fs::create_directories(root / checkout / "cases");
+    cli.write(std::string(checkout) + "/cases/part.e", "event Kick()\n");
+    cli.write(std::string(checkout) + "/cases/lamps.e", std::string(kLamps) + "load part.e\n");
+  }
+  const auto compiled = [&](const std::string& in, std::vector<std::string> arguments) {
+    ProcessOptions options;
+    options.folder = (root / in).string();
+    arguments.insert(arguments.begin(), "compile");
+    const auto result = cli.parallax(std::move(arguments), options);
+    CHECK_MESSAGE(result.code == 0, result.err);
+    return result.out;
+  };
+  const auto absolute = [&](const char* name) { return (root / name / "cases/lamps.e").string(); };
+  const auto text = compiled("a", {"cases/lamps.e"});
+  CHECK(text.find("c dec source cases/lamps.e ") != std::string::npos);
+  CHECK(compiled("b/deeper", {"cases/lamps.e"}) == text);
+  CHECK(compiled("b/deeper", {absolute("b/deeper")}) == text);
+  // From elsewhere a rule says where the checkout lies; the longest one counts.
+  CHECK(compiled("a", {absolute("b/deeper")}) != text);
+  CHECK(compiled("a", {absolute("b/deeper"), "--path-map", (root / "b/deeper").string() + "=",
+                       "--path-map", root.string() + "=/src"}) == text);
+  CHECK(cli.parallax({"compile", "a/cases/lamps.e", "--path-map", "a"}).code == 2);
+  // A rule ends at a slash.
+  CHECK(compiled("a", {"cases/lamps.e", "--path-map", "cas=x"}) == text);
+}
+
 TEST_CASE("a compiled model refuses what belongs to its compilation") {
   const CliFixture cli;
   cli.write("lamps.e", kLamps);

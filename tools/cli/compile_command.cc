@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "compiler/artifact/artifact_writer.h"
+#include "compiler/artifact/path_map.h"
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/pipeline/compile_report.h"
@@ -18,6 +20,7 @@ struct CompileOptions {
   std::string out;
   std::string emit = "cnf";
   bool no_projection = false;
+  std::vector<std::string> path_map;
 };
 
 /// The tables go to standard error: standard output may hold the artifact.
@@ -64,6 +67,14 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
         fmt::format("--emit={} needs the texts of the model", options.emit));
     return 0;
   }
+  std::error_code error;
+  compiler::PathMap paths(std::filesystem::current_path(error));
+  for (const auto& rule : options.path_map) {
+    if (paths.add(rule)) continue;
+    invocation.sink().error_about(codes::kUsage, "--path-map",
+                                  fmt::format("`{}` is not of the form FROM=TO", rule));
+    return 0;
+  }
   if (options.model.best && !options.model.minimize.empty()) {
     invocation.sink().error_about(
         codes::kUsage, "--best",
@@ -81,13 +92,14 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   if (is_pass(options.emit)) options.model.emit_pass = options.emit;
   options.model.folded = true;
-  const auto compilation = compile_models(options.model, invocation);
+  auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
   if (options.model.best && compilation->model.objectives.empty()) {
     sink.error_about(codes::kUsage, "--best", "the model has no `minimize` statement");
     return 0;
   }
   report_costs(options, *compilation, invocation);
+  compiler::map_paths(compilation->model, paths);
   const auto& model = compilation->model;
   std::string text;  // if it is not the artifact
   const base::TextPieces pieces = [&](const std::function<void(std::string_view)>& take) {
@@ -150,6 +162,10 @@ Command compile_command() {
   add_model_options(command, options->model).is_required = false;  // --emit=help needs none
   add_plan_options(command, options->model);
   command.heading("What is written");
+  command
+      .option("--path-map", options->path_map,
+              "FROM=TO: write TO for FROM where names of files begin with it; may be given again")
+      .list(ListForm::kOneEachTime);
   command.flag("--no-projection-line", options->no_projection,
                "Leave out `c t pmc` and `c p show`, for readers that take no comment there");
   command
