@@ -293,6 +293,8 @@ TEST_CASE("coverage: folders are held against their scenario as replay does it")
   cli.write("out/journal.ndjson", journal);
   CHECK(cli.parallax({"coverage", "out"}).code == 0);
   cli.write("two/opens.e", cli.read("two/opens.e") + "; changed\n");
+  CHECK(cli.parallax({"coverage", "out"}).code == 0);  // of the texts that the run kept
+  std::filesystem::remove(cli.folder() / "out/inputs.json");
   const auto changed = json_of(cli, {"coverage", "out"}, 3);
   CHECK(changed.at("diagnostics").at(0).at("code") == "E7113");
 }

@@ -122,6 +122,8 @@ TEST_CASE("a run without a discrepancy, a changed model and an executed plan") {
 
   REQUIRE(cli.parallax({"run", "two/unparks.yaml", "--out", "old"}).code == 1);
   cli.write("two/domain.e", cli.read("two/domain.e") + "; changed\n");
+  CHECK(cli.parallax({"explain", "old"}).code == 1);  // of the texts that the run kept
+  std::filesystem::remove(cli.folder() / "old/inputs.json");
   const auto changed = cli.parallax({"explain", "old"});
   CHECK(changed.code == 3);
   CHECK(changed.err.find("has changed: its hash was") != std::string::npos);

@@ -446,6 +446,7 @@ TEST_CASE("who writes to descriptors and files by other ways than the gate is kn
         "harness/calibration/protocol_loops.cc\n"
         "harness/campaign/journal.cc\n"
         "harness/report/report_json.cc\n"
+        "tools/app/kept_inputs.cc\n"
         "tools/app/trace_listing.cc\n"
         "tools/cli/export_command.cc\n"
         "tools/cli/fmt_command.cc\n"

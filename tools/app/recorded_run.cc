@@ -9,15 +9,18 @@
 #include <set>
 #include <system_error>
 
+#include "compiler/artifact/path_map.h"
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/texts.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/hash.h"
+#include "compiler/base/temporary_folder.h"
 #include "harness/campaign/trial.h"
 #include "harness/sampling/sampler.h"
 #include "harness/simulator/command_files.h"
 #include "runtime/replay/trace_replay.h"
 #include "tools/app/execution_check.h"
+#include "tools/app/kept_inputs.h"
 
 namespace parallax::tools {
 
@@ -139,6 +142,63 @@ std::string wrong_start(const std::optional<harness::Sampler>& sampler,
 
 }  // namespace
 
+/// Holds what a scenario of kept texts needs as long as it is used.
+struct KeptTexts {
+  explicit KeptTexts(const std::string& purpose) : folder(purpose) {}
+
+  base::TemporaryFolder folder;
+  base::SourceFiles unmapped;  // the model has views into these
+};
+
+namespace {
+
+/// Gives the texts the names that the run knew them by. Those from `stale` to `fresh`, of the files
+/// as they are now, lose theirs: whoever looks for a name is to find what was run.
+void map_names(const compiler::PathMap& map, std::size_t stale, std::size_t fresh, Context& context,
+               KeptTexts& kept) {
+  kept.unmapped = std::move(context.files());
+  base::SourceFiles mapped;
+  for (std::uint32_t i = 0; i < kept.unmapped.size(); ++i) {
+    const auto& file = kept.unmapped[base::FileId(i)];
+    const bool is_stale = i >= stale && i < fresh;
+    mapped.add(is_stale ? file.name() + " (not as it was run)" : map.mapped(file.name()),
+               std::string(file.text()));
+  }
+  for (const auto& input : kept.unmapped.inputs()) {
+    if (map.mapped(input) == input) mapped.note_input(input);
+  }
+  context.files() = std::move(mapped);
+}
+
+/// The scenario as the run folder has it; none if it has not, or cannot be loaded. Then nothing is
+/// reported. `stale`: number of the first text that was read of the files as they are now.
+std::optional<ScenarioModel> load_kept_scenario(const std::string& folder,
+                                                const harness::JournalHeader& header,
+                                                const ScenarioNeeds& needs, std::size_t stale,
+                                                Context& context) {
+  auto kept = std::make_shared<KeptTexts>("inputs");
+  if (kept->folder.path().empty()) return std::nullopt;
+  const auto root = kept->folder.path() / "run";
+  const auto unpacked = unpack_inputs(folder, header.scenario_hash, header.scenario, root);
+  if (!unpacked) return std::nullopt;
+  const auto before = context.sink();
+  const auto fresh = context.files().size();
+  auto loaded = load_scenario_model(unpacked->scenario, context, needs);
+  if (!loaded || !harness::scenario_change(header, loaded->sources_hash).empty()) {
+    context.sink() = before;
+    return std::nullopt;
+  }
+  compiler::PathMap map{fs::path()};
+  map.add(root.string() + "=" + unpacked->named);
+  map_names(map, stale, fresh, context, *kept);
+  compiler::map_paths(loaded->compilation.model, map);
+  loaded->scenario.name = header.scenario;
+  loaded->kept = std::move(kept);
+  return *std::move(loaded);
+}
+
+}  // namespace
+
 fs::path scenario_path(const harness::JournalHeader& header) {
   const fs::path named(header.scenario);
   if (header.start_folder.empty() || named.is_absolute()) return named;
@@ -157,6 +217,11 @@ harness::Execution recorded_execution(const harness::JournalHeader& header) {
   return header.asked.execution;
 }
 
+RunFolderOptions found_again(const std::string& folder, const ScenarioModel& loaded) {
+  if (loaded.kept) return {folder, {}};
+  return {folder, loaded.scenario.file.string()};
+}
+
 base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& options,
                                                    const harness::JournalHeader& header,
                                                    ScenarioUse use, Context& context) {
@@ -166,14 +231,26 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
   const auto refuse = [&](const std::string& why) {
     return sink.error_about(codes::kReplayImpossible, options.folder, why);
   };
+  const auto before = sink;
+  const auto first_text = context.files().size();
+  const ScenarioNeeds needs{.as_run = true,
+                            .execution = recorded_execution(header),
+                            .plain = use == ScenarioUse::kExplain};
+  const auto kept = [&]() -> std::optional<ScenarioModel> {
+    if (!is_recorded || !options.may_use_kept) return std::nullopt;
+    auto found = load_kept_scenario(options.folder, header, needs, first_text, context);
+    if (found) {
+      context.remark(fmt::format(
+          "{} or a file that it reads is not as it was run; the texts that the run kept count",
+          base::printable(header.scenario)));
+    }
+    return found;
+  };
   if (is_recorded && !is_file(path)) {
+    if (auto found = kept()) return *std::move(found);
     return refuse(fmt::format("there is no scenario `{}`", base::printable(path.string())));
   }
-  const auto before = sink;
-  const auto execution = recorded_execution(header);
-  auto loaded = load_scenario_model(
-      path, context,
-      {.as_run = true, .execution = execution, .plain = use == ScenarioUse::kExplain});
+  auto loaded = load_scenario_model(path, context, needs);
   const auto change =
       loaded ? harness::scenario_change(header, loaded->sources_hash) : std::string();
   if (loaded && change.empty()) {
@@ -193,6 +270,7 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
     return diagnostic.code == codes::kLoadOutside;
   });
   if (is_recorded) sink = before;
+  if (auto found = kept()) return *std::move(found);
   if (!loaded && !is_recorded) return sink.already_reported();
   const auto name = base::printable(path.string());
   if (loaded) {

@@ -11,7 +11,13 @@ namespace parallax::tools {
 struct RunFolderOptions {
   std::string folder;
   std::string scenario;  // if the file was moved; empty: where the journal says
+  /// Where the project's files are not those of the run any more, those that the run kept
+  /// (kInputsName) take their place. False: for what changes the files.
+  bool may_use_kept = true;
 };
+
+/// The options to load the scenario once more, by the name under which it was found.
+RunFolderOptions found_again(const std::string& folder, const ScenarioModel& loaded);
 
 /// Where the scenario of a run lies: a relative path starts in the folder that the run was started
 /// in, or in the current folder if nothing lies there.
@@ -26,10 +32,11 @@ harness::Execution recorded_execution(const harness::JournalHeader& header);
 /// (ScenarioNeeds::plain).
 enum class ScenarioUse : std::uint8_t { kRun, kExplain };
 
-/// Loads the scenario of a run, which must be the one that was run: kReplayImpossible if it is not,
-/// or cannot be read any more. A journal may name any file, so of one that is not the scenario of
-/// the run nothing is said but this, unless the user named it. Where it is not found by the name
-/// that it has from here, a remark says which file it is.
+/// Loads the scenario of a run, which must be the one that was run. Where it has changed or cannot
+/// be read any more, the texts that the run kept are loaded, and a remark says so: their names are
+/// those of then. kReplayImpossible if there are none. A journal may name any file, so of one that
+/// is not the scenario of the run nothing is said but this, unless the user named it. Where it is
+/// not found by the name that it has from here, a remark says which file it is.
 base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& options,
                                                    const harness::JournalHeader& header,
                                                    ScenarioUse use, Context& context);

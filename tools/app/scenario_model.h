@@ -32,6 +32,8 @@ struct ScenarioModel {
   /// The world, where the simulator is a model.
   std::shared_ptr<const harness::SteppedModel> world = nullptr;
   std::string world_hash = {};  // over its texts
+  /// Where the texts lie that the run kept, if it was loaded from these; goes with the model.
+  std::shared_ptr<const struct KeptTexts> kept = nullptr;
 };
 
 /// How a command needs a scenario's model.

@@ -52,7 +52,7 @@ base::Result<std::optional<DiscrepancyAtHand>> load(const BorderOptions& options
     return none;
   }
   // Uses the name under which the scenario was found, which a remark has told.
-  const RunFolderOptions folder{options.run.folder, (*found)->loaded.scenario.file};
+  const auto folder = found_again(options.run.folder, (*found)->loaded);
   auto as_run =
       load_recorded_scenario(folder, *(*found)->journal.header, ScenarioUse::kRun, invocation);
   if (!as_run) return sink.already_reported();

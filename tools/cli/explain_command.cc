@@ -91,8 +91,7 @@ base::Result<FurtherRecords> make_further_runs(const ExplainOptions& options,
   FurtherRecords none;
   if (options.further.runs == 0) return none;
   // Uses the name under which the scenario was found, which a remark has told.
-  const RunFolderOptions folder{options.model.models.front(),
-                                std::filesystem::path(found.loaded.scenario.file).string()};
+  const auto folder = found_again(options.model.models.front(), found.loaded);
   auto loaded =
       load_recorded_scenario(folder, *found.journal.header, ScenarioUse::kRun, invocation);
   if (!loaded) return sink.already_reported();

@@ -13,6 +13,7 @@
 #include "harness/report/report.h"
 #include "tools/app/closed_loop.h"
 #include "tools/app/earlier_runs.h"
+#include "tools/app/kept_inputs.h"
 #include "tools/app/run_coverage.h"
 #include "tools/app/scenario_check.h"
 #include "tools/app/scenario_model.h"
@@ -251,6 +252,9 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
     return 0;
   }
   const auto& model = loaded->compilation.model;
+  // Before it is run, which may take long: the files may change meanwhile.
+  const auto inputs =
+      packed_inputs(options.scenario, loaded->sources_hash, invocation.files().inputs());
   auto campaign = campaign_options(options, *loaded, invocation);
   if (options.out.empty() && !base::check_unnamed_output(campaign.run_dir, ".", "--out", sink)) {
     return 0;
@@ -258,7 +262,7 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   const auto simulator = permitted_simulator(
       *loaded, options.commands.allow || !options.commands.refuse, invocation, *workers);
   if (!simulator) return 0;
-  for (const auto* name : {"report.txt", "report.json"}) {
+  for (const auto* name : {"report.txt", "report.json", kInputsName.data()}) {
     if (!base::check_output(campaign.run_dir / name, invocation.files(), sink)) return 0;
   }
   SampleOutput samples(options.samples);
@@ -277,6 +281,10 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   result->coverage = coverage_of_run(*loaded, *result, invocation);
   warn_of_reused_starts(campaign, *result, loaded->scenario, sink);
   if (result->journal_open && !harness::write_report(*result, campaign.run_dir, sink)) return 0;
+  if (result->journal_open && !inputs.empty() &&
+      !base::write_output(campaign.run_dir / kInputsName, inputs, invocation.files(), sink)) {
+    return 0;
+  }
   const bool is_verbose = invocation.options().verbosity > 0;
   if (invocation.options().json) {
     invocation.document(harness::campaign_json(*result, true, is_verbose));

@@ -19,7 +19,9 @@ namespace fs = std::filesystem;
 base::Result<ScenarioModel> load(const RepairOptions& options, const harness::JournalHeader& header,
                                  Context& context) {
   if (!options.other_model) {
-    return load_recorded_scenario(options.folder, header, ScenarioUse::kExplain, context);
+    auto folder = options.folder;
+    folder.may_use_kept = false;  // it edits the files
+    return load_recorded_scenario(folder, header, ScenarioUse::kExplain, context);
   }
   const auto path =
       options.folder.scenario.empty() ? scenario_path(header) : fs::path(options.folder.scenario);

@@ -89,7 +89,8 @@ class Rounds {
       return sink.error_about(codes::kFileNotWritable, options_.out,
                               "--loop needs a folder that is new or empty");
     }
-    const auto& folder = options_.repair.folder;
+    auto folder = options_.repair.folder;
+    folder.may_use_kept = false;  // it edits the files
     const auto journal = harness::read_journal(folder.folder, context_.files(), sink);
     if (!journal) return sink.already_reported();
     if (!journal->header) {

@@ -275,6 +275,7 @@ TEST_CASE("what is asked wrongly is said, and nothing is simulated") {
   refused({"confirm", "s.yaml", allow}, 3, "s.yaml");
   CHECK(cli.runs() == runs);
   cli.write("domain.e", cli.read("domain.e") + "; changed\n");
+  std::filesystem::remove(cli.folder() / "out/inputs.json");
   refused({"confirm", "out", allow}, 3, "has changed: its hash was");
   CHECK(cli.runs() == runs);
 
