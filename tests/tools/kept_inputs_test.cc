@@ -175,5 +175,24 @@ TEST_CASE("a suite says which value of the world changed since its case passed")
   CHECK(has(failed.out, "world.joints.reach.range_m [-0.6, 0.6] -> [-3, 3]"));
 }
 
+TEST_CASE("two runs say which values changed between them") {
+  const KeptRun cli;
+  cli.replace("world.yaml", "mass_kg: 0.3", "mass_kg: 0.2");
+  cli.replace("common.yaml", "r2: {x: [1, 2]}", "r2: {x: [1, 1.95]}");
+  REQUIRE(cli.parallax({"run", "wrong_model.yaml", "--out", "q", "--max-runs", "20"}).code == 1);
+  const auto found = cli.parallax({"diff", "r", "q"});
+  CHECK(found.code == 1);
+  CHECK_MESSAGE(has(found.out, "bodies.box.mass_kg 0.3 -> 0.2"), found.out);
+  CHECK(has(found.out, "regions.cells.r2.x [1, 2] -> [1, 1.95]"));
+  CHECK_FALSE(has(found.out, "/tmp/"));
+  const auto document = json_of(cli, {"diff", "r", "q"}, 1);
+  CHECK(document["inputs"]["settings"].size() == 2);
+  CHECK(document["inputs"]["settings"][0]["new_place"]["file"] == "common.yaml");
+  REQUIRE(cli.parallax({"report", "r", "q", "-o", "two.html"}).code == 0);
+  CHECK(has(cli.read("two.html"), "world.bodies.box.mass_kg 0.3 -&gt; 0.2"));
+  fs::remove(cli.folder() / "q/inputs.json");
+  CHECK(has(cli.parallax({"diff", "r", "q"}).out, "were not compared"));
+}
+
 }  // namespace
 }  // namespace parallax::test

@@ -454,7 +454,7 @@ TEST_CASE("who writes to descriptors and files by other ways than the gate is kn
         "tools/cli/ledger_command.cc\n"
         "tools/confirm/confirm_record.cc\n"
         "tools/doctor/trials.cc\n"
-        "tools/history/bisect.cc\n"
+        "tools/history/borrowed_repository.cc\n"
         "tools/learn/learn.cc\n"
         "tools/learn/round_folder.cc\n"
         "tools/mutate/judged_mutants.cc\n"

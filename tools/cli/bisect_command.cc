@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -105,10 +106,21 @@ std::string document_of(const BisectResult& result) {
 /// Options that would change what a run is for.
 bool is_reserved(const std::string& word) {
   static constexpr std::string_view kReserved[] = {
-      "--out",   "--resume",         "--json",        "--samples",    "--footprint",
-      "--quiet", "--allow-commands", "--no-commands", "--diagnostics"};
+      "--out",   "--resume",         "--json",        "--samples",     "--footprint",
+      "--quiet", "--allow-commands", "--no-commands", "--diagnostics", "--only"};
   const auto name = word.substr(0, word.find('='));
   return std::find(std::begin(kReserved), std::end(kReserved), name) != std::end(kReserved);
+}
+
+/// `FILE:ID` is a case of a manifest, unless there is a file of this name.
+void split_case(BisectOptions& asked) {
+  const auto colon = asked.scenario.rfind(':');
+  std::error_code error;
+  if (colon == std::string::npos || std::filesystem::exists(asked.scenario, error)) return;
+  const auto file = asked.scenario.substr(0, colon);
+  if (!file.ends_with(".yaml") && !file.ends_with(".yml")) return;
+  asked.case_id = asked.scenario.substr(colon + 1);
+  asked.scenario = file;
 }
 
 int bisect(const BisectCommandOptions& options, Invocation& invocation) {
@@ -116,6 +128,7 @@ int bisect(const BisectCommandOptions& options, Invocation& invocation) {
   BisectOptions asked{options.old_revision,
                       options.new_revision,
                       options.run.front(),
+                      "",
                       {options.run.begin() + 1, options.run.end()}};
   for (const auto& word : asked.run_options) {
     if (!is_reserved(word)) continue;
@@ -123,6 +136,7 @@ int bisect(const BisectCommandOptions& options, Invocation& invocation) {
                      "bisect says this itself; permissions stand in front of `--`");
     return 0;
   }
+  split_case(asked);
   asked.allow_commands = options.commands.allow;
   asked.allow_outside = invocation.form().allow_outside;
   asked.first_parent = options.first_parent;
@@ -147,11 +161,12 @@ int bisect(const BisectCommandOptions& options, Invocation& invocation) {
 Command bisect_command() {
   auto options = std::make_shared<BisectCommandOptions>();
   OptionTable command("bisect",
-                      "Which revision changed the verdict of a scenario? (docs/history.md)");
+                      "Which revision changed a verdict, or a case of a suite? (docs/history.md)");
   command.footer(
       "Examples:\n"
       "  parallax bisect v1.2 HEAD -- scenarios/kitchen/plan2.yaml\n"
-      "  parallax bisect HEAD~20 HEAD -- edge.yaml --max-runs 50 --seed 3\n"
+      "  parallax bisect HEAD~20 HEAD -- edge.yaml --seed 3\n"
+      "  parallax bisect HEAD~20 HEAD -- cases/suite.yaml:lock_opens\n"
       "Revisions are checked out in a temporary folder; your checkout, its index and its refs are\n"
       "left alone, and hooks and filters of the repository are not run. Revisions in which the\n"
       "scenario is missing, is refused or gives no verdict are skipped.\n"
@@ -162,7 +177,7 @@ Command bisect_command() {
   command.option("new", options->new_revision, "A later one").required();
   command
       .option("scenario", options->run,
-              "Behind `--`: the scenario, and options of `parallax run` for each revision")
+              "Behind `--`: the scenario with options of `run`, or FILE:ID with those of `suite`")
       .required()
       .file({"yaml"});
   command.flag("--first-parent", options->first_parent, "Of merges follow the first parent only");

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <tuple>
 
@@ -10,6 +11,7 @@
 #include "compiler/base/words.h"
 #include "tools/cli/command.h"
 #include "tools/cli/diff_gate.h"
+#include "tools/diff/kept_difference.h"
 #include "tools/diff/model_difference.h"
 #include "tools/diff/rates_revision.h"
 #include "tools/diff/revision.h"
@@ -206,6 +208,26 @@ base::Result<std::vector<compiler::Fact>> result_facts(const std::string& path, 
   return rates_facts(*rates);
 }
 
+/// Adds what differs between the texts that two runs kept.
+void add_kept(const DiffOptions& options, Comparison& out, Invocation& invocation) {
+  const auto kept = compare_kept(options.old_path, options.new_path, invocation);
+  if (!kept) {
+    out.fields += ",\"inputs\":null";
+    std::error_code error;
+    const bool folders = std::filesystem::is_directory(options.old_path, error) &&
+                         std::filesystem::is_directory(options.new_path, error);
+    if (!folders) return;  // a report alone has no texts beside it
+    out.text += "the texts of the scenarios were not compared: not both runs kept them\n";
+    return;
+  }
+  const auto text = kept_text(*kept, options.stat);
+  out.differs = out.differs || !text.empty();
+  if (!text.empty()) out.text += "what changed in the scenario\n" + text;
+  out.fields += fmt::format(",\"inputs\":{{{},\"settings\":{}}}",
+                            facts_fields(kept->report(), "declarations", "axioms"),
+                            kept->settings ? settings_json(*kept->settings) : "[]");
+}
+
 /// Runs, or results of `parallax rates`.
 int diff_results(const DiffOptions& options, RevisionKind kind, Invocation& invocation) {
   const auto before = result_facts(options.old_path, kind, invocation);
@@ -217,6 +239,7 @@ int diff_results(const DiffOptions& options, RevisionKind kind, Invocation& invo
   out.differs = !report.difference.empty();
   out.fields = facts_fields(report, "settings", "results");
   out.text = facts_text(report, "settings", "results", options.stat);
+  if (kind == RevisionKind::kRun) add_kept(options, out, invocation);
   return print(options, out, invocation);
 }
 

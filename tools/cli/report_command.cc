@@ -17,6 +17,7 @@
 #include "compiler/base/json.h"
 #include "tools/cli/command.h"
 #include "tools/cli/shared_options.h"
+#include "tools/diff/kept_difference.h"
 #include "tools/history/change_points.h"
 #include "tools/page/gather.h"
 #include "tools/page/history_page.h"
@@ -189,7 +190,12 @@ int report(const ReportOptions& options, Invocation& invocation) {
     }
     pages.push_back(std::move(*page));
   }
-  const auto text = pages.size() == 1 ? run_page(pages.front()) : comparison_page(pages);
+  std::vector<std::string> changes;
+  for (std::size_t i = 1; i < pages.size(); ++i) {
+    const auto kept = compare_kept(options.folders.front(), options.folders[i], invocation);
+    changes.push_back(kept ? kept_text(*kept, false) : std::string());
+  }
+  const auto text = pages.size() == 1 ? run_page(pages.front()) : comparison_page(pages, changes);
   const auto path = page_path(options);
   if (!base::write_output(path, text, invocation.files(), invocation.sink(),
                           base::TextForm::kMarkup)) {

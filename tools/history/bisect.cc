@@ -22,7 +22,9 @@
 #include "compiler/base/json.h"
 #include "compiler/base/path_gate.h"
 #include "compiler/base/temporary_folder.h"
+#include "harness/config/suite_manifest.h"
 #include "harness/report/run_report.h"
+#include "tools/history/borrowed_repository.h"
 #include "tools/history/git.h"
 
 namespace parallax::tools {
@@ -63,78 +65,10 @@ base::Result<Place> place_of(const std::string& scenario, base::DiagnosticSink& 
   return Place{folder.string(), inside.generic_string()};
 }
 
-bool is_hash(std::string_view word) {
-  constexpr std::size_t kShortest = 40;
-  return word.size() >= kShortest && std::all_of(word.begin(), word.end(), [](char c) {
-           return base::is_digit(c) || (c >= 'a' && c <= 'f');
-         });
+std::string text_in(const Json& object, const char* name) {
+  const auto* value = base::json_member(object, name);
+  return value == nullptr ? "" : base::json_as<std::string>(*value).value_or("");
 }
-
-base::Result<std::string> commit_of(const Place& place, const std::string& revision,
-                                    base::DiagnosticSink& sink) {
-  const auto hash =
-      revision.empty() || revision.front() == '-'
-          ? std::nullopt
-          : ask_git(place.folder, {"rev-parse", "--verify", "--quiet", revision + "^{commit}"});
-  if (!hash || !is_hash(*hash)) return refuse(revision, "git knows no such revision here", sink);
-  return *hash;
-}
-
-/// The first line of git's error message.
-std::string complaint(const base::Captured& git) {
-  if (git.code < 0 || git.code == 127) return "git cannot be started";
-  auto text = git.err.empty() ? git.out : git.err;
-  while (text.ends_with('\n')) text.pop_back();
-  return "git: " + text.substr(0, text.find('\n'));
-}
-
-/// A repository of our own that borrows the user's objects.
-class Borrowed {
- public:
-  explicit Borrowed(fs::path folder) : folder_(std::move(folder)) {}
-
-  std::string path() const { return folder_.string(); }
-
-  base::Status make(const Place& place, const std::string& first, base::DiagnosticSink& sink) {
-    const auto format = ask_git(place.folder, {"rev-parse", "--show-object-format"});
-    const auto objects = git_path(place, "objects"), shallow = git_path(place, "shallow");
-    if (objects.empty() || objects.string().find_first_of("\n\"#") != std::string::npos) {
-      return refuse(objects.string(), "git cannot borrow objects from a folder of this name", sink);
-    }
-    const auto made = run_git(
-        "/",
-        {"init", "--quiet", "--template=", "--object-format=" + format.value_or("sha1"), path()});
-    if (made.code != 0) return refuse(path(), complaint(made), sink);
-    const auto own = folder_ / ".git";
-    std::error_code error;
-    fs::create_directories(own / "objects/info", error);
-    if (!base::write_file_atomically(own / "objects/info/alternates", objects.string() + '\n',
-                                     sink)) {
-      return sink.already_reported();
-    }
-    if (fs::exists(shallow, error)) fs::copy_file(shallow, own / "shallow", error);
-    return check_out(first, sink);
-  }
-
-  base::Status check_out(const std::string& revision, base::DiagnosticSink& sink) {
-    const auto done = run_git(path(), {"checkout", "--quiet", "--force", "--detach", revision});
-    if (done.code != 0) return refuse(revision, complaint(done), sink);
-    return base::Unit{};
-  }
-
-  std::string subject(const std::string& revision) const {
-    return ask_git(path(), {"log", "-1", "--no-show-signature", "--format=%s", revision})
-        .value_or("");
-  }
-
- private:
-  static fs::path git_path(const Place& place, const char* name) {
-    const auto path = ask_git(place.folder, {"rev-parse", "--git-path", name});
-    return path ? base::real_path(fs::path(place.folder) / *path) : fs::path();
-  }
-
-  fs::path folder_;
-};
 
 class Bisection {
  public:
@@ -146,12 +80,12 @@ class Bisection {
     const auto place = place_of(options_.scenario, sink_);
     if (!place) return sink_.already_reported();
     scenario_ = place->scenario;
-    const auto before = commit_of(*place, options_.old_revision, sink_);
-    const auto after = commit_of(*place, options_.new_revision, sink_);
+    const auto before = commit_of(place->folder, options_.old_revision, sink_);
+    const auto after = commit_of(place->folder, options_.new_revision, sink_);
     if (!before || !after) return sink_.already_reported();
     if (scratch_.path().empty()) return refuse("", "no temporary folder can be made", sink_);
     repository_.emplace(scratch_.path() / "repository");
-    if (!repository_->make(*place, *before, sink_)) return sink_.already_reported();
+    if (!repository_->make(place->folder, *before, sink_)) return sink_.already_reported();
     if (!try_end(*before, out_.old_end) || !try_end(*after, out_.new_end)) {
       return sink_.already_reported();
     }
@@ -184,14 +118,47 @@ class Bisection {
     }
     const auto folder = scratch_.path() / "run";
     fs::remove_all(folder, error);
-    std::vector<std::string> words = {"parallax",      "run",   "--json",       "--quiet",
-                                      "--color=never", "--out", folder.string()};
-    words.emplace_back(options_.allow_commands ? "--allow-commands" : "--no-commands");
+    const bool is_case = !options_.case_id.empty();
+    std::vector<std::string> words = {
+        "parallax", is_case ? "suite" : "run", "--json",       "--quiet",
+        "--out",    folder.string(),           "--color=never"};
+    if (is_case) words.insert(words.end(), {"--no-cache", "--only", case_name()});
+    if (options_.allow_commands) words.emplace_back("--allow-commands");
+    if (!options_.allow_commands && !is_case) words.emplace_back("--no-commands");
     if (options_.allow_outside) words.emplace_back("--allow-outside");
     words.insert(words.end(), options_.run_options.begin(), options_.run_options.end());
     words.insert(words.end(), {"--", scenario_});
-    judge(this_program(words, repository_->path()), out);
+    const auto child = this_program(words, repository_->path());
+    if (is_case) {
+      judge_case(child, out);
+    } else {
+      judge(child, out);
+    }
     return out;
+  }
+
+  std::string case_name() const { return scenario_ + ':' + options_.case_id; }
+
+  void judge_case(const base::Captured& suite, RevisionVerdict& out) const {
+    const auto document = base::parse_json(suite.out);
+    const auto* cases = base::json_member(document, "cases");
+    for (const auto& one : cases != nullptr && cases->is_array() ? *cases : Json::array()) {
+      if (text_in(one, "case") != case_name()) continue;
+      const auto outcome = text_in(one, "outcome");
+      const auto* problems = base::json_member(one, "problems");
+      const bool has_words = problems != nullptr && problems->is_array() && !problems->empty();
+      if (has_words) out.words = base::json_as<std::string>(problems->front()).value_or("");
+      out.words = out.words.substr(0, out.words.find('\n'));
+      const bool answered = outcome == "passed" || outcome == "failed";
+      if (answered) out.verdict = outcome;
+      if (!answered && out.words.empty()) out.words = outcome;
+      return;
+    }
+    judge(suite, out);
+    if (out.words.empty() || suite.code == 2) {
+      out.words = "the case is missing";
+      out.input_is_wrong = true;
+    }
   }
 
   base::Captured this_program(const std::vector<std::string>& words, const std::string& folder) {
@@ -219,16 +186,12 @@ class Bisection {
       return;
     }
     const auto document = base::parse_json(run.out);
-    const auto text = [](const Json& object, const char* name) {
-      const auto* value = base::json_member(object, name);
-      return value == nullptr ? "" : base::json_as<std::string>(*value).value_or("");
-    };
     out.input_is_wrong = run.code == 2 || run.code == 3;
     const auto* diagnostics = base::json_member(document, "diagnostics");
     for (const auto& one :
          diagnostics != nullptr && diagnostics->is_array() ? *diagnostics : Json::array()) {
-      if (text(one, "severity") != "error") continue;
-      out.words = fmt::format("{}: {}", text(one, "code"), text(one, "message"));
+      if (text_in(one, "severity") != "error") continue;
+      out.words = fmt::format("{}: {}", text_in(one, "code"), text_in(one, "message"));
       return;
     }
     out.words =
@@ -246,7 +209,7 @@ class Bisection {
       // Subjects of commits stand in other lines, and may say anything.
       const auto line = answer.out.substr(0, answer.out.find('\n'));
       const auto hash = line.substr(0, line.find(' '));
-      if (is_hash(hash) && line == hash + " is the first bad commit") return found({hash});
+      if (is_git_hash(hash) && line == hash + " is the first bad commit") return found({hash});
       const auto here = ask_git(repository_->path(), {"rev-parse", "--verify", "HEAD"});
       if (!here) break;
       auto one = try_here(*here);
@@ -261,7 +224,7 @@ class Bisection {
     if (stopped()) return base::Unit{};
     constexpr int kOnlySkipped = 2;
     if (answer.code == kOnlySkipped) return found(hashes_in(answer.out));
-    return refuse("", complaint(answer), sink_);
+    return refuse("", git_complaint(answer), sink_);
   }
 
   /// The lines that are a hash and nothing else.
@@ -270,7 +233,7 @@ class Bisection {
     for (std::size_t at = 0; at < text.size();) {
       const auto end = std::min(text.find('\n', at), text.size());
       const auto line = text.substr(at, end - at);
-      if (is_hash(line)) out.emplace_back(line);
+      if (is_git_hash(line)) out.emplace_back(line);
       at = end + 1;
     }
     return out;
@@ -293,23 +256,62 @@ class Bisection {
     const std::vector<std::pair<std::string, std::string>> sides = {{"before", revision + "^1"},
                                                                     {"after", revision}};
     for (const auto& [name, commit] : sides) {
-      const auto made =
-          run_git(repository_->path(), {"worktree", "add", "--quiet", "--force", "--detach",
-                                        (scratch_.path() / name).string(), commit});
+      const bool made = repository_->add_tree(scratch_.path() / name, commit);
       std::error_code error;
-      if (made.code != 0 || !fs::is_regular_file(scratch_.path() / name / scenario_, error)) {
+      if (!made || !fs::is_regular_file(scratch_.path() / name / scenario_, error)) {
         out_.difference =
             fmt::format("nothing to compare: {} it there is no such scenario\n", name);
         return;
       }
     }
-    const auto child = this_program({"parallax", "diff", "--quiet", "--color=never", "--",
-                                     "before/" + scenario_, "after/" + scenario_},
-                                    scratch_.path().string());
-    out_.difference = child.out;
+    if (!options_.case_id.empty()) return compare_models_of_case();
+    compare_files({}, "before/" + scenario_, "after/" + scenario_);
+  }
+
+  void compare_files(std::vector<std::string> options, const std::string& before,
+                     const std::string& after) {
+    options.insert(options.begin(), {"parallax", "diff", "--quiet", "--color=never"});
+    options.insert(options.end(), {"--", before, after});
+    const auto child = this_program(options, scratch_.path().string());
+    if (child.code != 0) out_.difference += child.out;
     if (child.code > 1) {
-      out_.difference +=
-          "the scenarios cannot be compared: " + child.err.substr(0, child.err.find('\n')) + '\n';
+      out_.difference += fmt::format("{} and {} cannot be compared: {}\n", before, after,
+                                     child.err.substr(0, child.err.find('\n')));
+    }
+  }
+
+  /// The case as one side has it.
+  std::optional<harness::ManifestCase> case_in(const std::string& side) {
+    base::SourceFiles files;
+    base::DiagnosticSink unread;
+    auto manifest = harness::load_manifest(scratch_.path() / side / scenario_, files, unread,
+                                           options_.allow_outside);
+    if (!manifest) return std::nullopt;
+    for (auto& one : manifest->cases) {
+      if (one.id == options_.case_id) return std::move(one);
+    }
+    return std::nullopt;
+  }
+
+  /// Compares the models that stand at the same place of the case on both sides.
+  void compare_models_of_case() {
+    const auto before = case_in("before"), after = case_in("after");
+    if (!before || !after) {
+      out_.difference = "the case is not on both sides\n";
+      return;
+    }
+    std::vector<std::string> options;
+    if (before->horizon) options = {"--horizon", std::to_string(*before->horizon)};
+    const auto name = [&](const harness::LocatedText& model) {
+      return fs::path(model.text).lexically_relative(scratch_.path()).generic_string();
+    };
+    for (std::size_t i = 0; i < before->models.size() && i < after->models.size(); ++i) {
+      compare_files(options, name(before->models[i]), name(after->models[i]));
+    }
+    if (before->models.size() != after->models.size()) out_.difference += "models of the case\n";
+    if (out_.difference.empty()) {
+      out_.difference =
+          fmt::format("its models are the same; what {} says of it is not\n", scenario_);
     }
   }
 
@@ -318,7 +320,7 @@ class Bisection {
   const std::atomic<bool>& stop_;
   base::DiagnosticSink& sink_;
   base::TemporaryFolder scratch_{"bisect"};
-  std::optional<Borrowed> repository_;
+  std::optional<BorrowedRepository> repository_;
   std::string scenario_;  // from the top of the checkout
   BisectResult out_;
 };

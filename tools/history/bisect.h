@@ -14,7 +14,8 @@ namespace parallax::tools {
 struct BisectOptions {
   std::string old_revision, new_revision;  // as git reads them
   std::string scenario;                    // where it lies, or lay, in the user's checkout
-  std::vector<std::string> run_options;    // of `parallax run`
+  std::string case_id;                     // of the case, if the file is a manifest of a suite
+  std::vector<std::string> run_options;    // of `parallax run`, or of `parallax suite`
   bool allow_commands = false;             // start what the scenario names as its simulator
   bool allow_outside = false;
   bool first_parent = false;
@@ -24,8 +25,10 @@ struct BisectOptions {
 struct RevisionVerdict {
   std::string revision;  // its full hash
   std::string subject;
-  std::string verdict;  // "no-discrepancy" or "discrepancy"; empty: it says nothing of the change
-  std::string words;    // the first discrepancy; or why there is no verdict
+  /// "no-discrepancy" or "discrepancy", of a case "passed" or "failed"; empty: it says nothing of
+  /// the change.
+  std::string verdict;
+  std::string words;            // the first discrepancy or problem; or why there is no verdict
   bool input_is_wrong = false;  // the scenario is missing, or was refused
 };
 
@@ -43,11 +46,11 @@ struct BisectResult {
   bool ends_have_verdicts() const { return !old_end.verdict.empty() && !new_end.verdict.empty(); }
 };
 
-/// Finds the revision that changed the verdict of a scenario with `git bisect`, in a temporary
-/// repository, which borrows the objects of the user's. The user's repository, its checkout and its
-/// refs are only read, and none of its hooks, filters and settings are used. Each revision is run
-/// in a process of its own. Reports unknown revisions as kUsage. `tell` is called for each revision
-/// that was tried.
+/// Finds the revision that changed the verdict of a scenario, or the outcome of a case, with `git
+/// bisect`, in a temporary repository, which borrows the objects of the user's. The user's
+/// repository, its checkout and its refs are only read, and none of its hooks, filters and settings
+/// are used. Each revision is run in a process of its own. Reports unknown revisions as kUsage.
+/// `tell` is called for each revision that was tried.
 base::Result<BisectResult> bisect_verdict(const BisectOptions& options,
                                           const std::function<void(const RevisionVerdict&)>& tell,
                                           const std::atomic<bool>& stop,

@@ -261,9 +261,25 @@ std::string causes(const std::vector<PageData>& pages) {
                     table_of("Causes", "<th scope=\"col\">Cause</th>" + column_heads(pages), rows));
 }
 
+/// What changed in the scenarios, as `parallax diff` says it.
+std::string changed(const std::vector<PageData>& pages, const std::vector<std::string>& changes) {
+  constexpr std::size_t kMostBytes = 20'000;
+  std::string out;
+  for (std::size_t i = 0; i < changes.size() && i + 1 < pages.size(); ++i) {
+    if (changes[i].empty()) continue;
+    auto text = changes[i];
+    if (text.size() > kMostBytes) text = text.substr(0, text.rfind('\n', kMostBytes)) + "\n...\n";
+    out += fmt::format("<h3>{}</h3>\n<pre>{}</pre>\n", html_short(pages[i + 1].folder), html(text));
+  }
+  if (out.empty()) return {};
+  return section_of("changed", "What changed in the scenario",
+                    fmt::format("<p>Against {}.</p>\n", html_short(pages.front().folder)) + out);
+}
+
 }  // namespace
 
-std::string comparison_page(const std::vector<PageData>& pages) {
+std::string comparison_page(const std::vector<PageData>& pages,
+                            const std::vector<std::string>& changes) {
   const bool agree = std::all_of(pages.begin(), pages.end(), [&](const PageData& page) {
     return page.verdict == pages.front().verdict;
   });
@@ -278,7 +294,8 @@ std::string comparison_page(const std::vector<PageData>& pages) {
               html(banner.substr(0, 3000)) + "</p>\n";
     }
   }
-  body += "<main id=\"main\">\n" + overview(pages) + traces(pages) + causes(pages) + "</main>\n" +
+  body += "<main id=\"main\">\n" + overview(pages) + changed(pages, changes) + traces(pages) +
+          causes(pages) + "</main>\n" +
           "<footer><p>Made by parallax from what the runs recorded.</p></footer>\n";
   return html_document("parallax: comparison of runs", body, {});
 }

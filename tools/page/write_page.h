@@ -22,8 +22,10 @@ struct DocumentOptions {
 std::string run_page(const PageData& page, const DocumentOptions& options = {});
 
 /// Comparison of several runs: verdicts, rates with intervals, traces that only some of them have.
-/// The others are compared with the first one.
-std::string comparison_page(const std::vector<PageData>& pages);
+/// The others are compared with the first one. `changes`: for each but the first the lines that say
+/// what changed in its scenario; empty: nothing, or not known.
+std::string comparison_page(const std::vector<PageData>& pages,
+                            const std::vector<std::string>& changes = {});
 
 /// The document around a body: style and script inline, allowed by their hashes alone.
 std::string html_document(const std::string& title, const std::string& body,

@@ -162,7 +162,7 @@ TEST_CASE("the manifest and the quarantine of the page") {
 TEST_CASE("the history of the page, and its search for a revision") {
   const Repository cli;
   const auto examples = examples_of("history.md");
-  CHECK(examples.size() == 2);
+  CHECK(examples.size() == 3);
   cli.commit("first");
   cli.git({"tag", "v1.2"});
   const auto& suite = find(examples, "--history");
@@ -181,6 +181,28 @@ TEST_CASE("the history of the page, and its search for a revision") {
   CHECK(cli.parallax({"report", "--history", "history.jsonl", "-o", "history.html"}).code == 0);
 
   check_bisect(cli, find(examples, "scenarios/two_regions/edge.yaml"));
+}
+
+TEST_CASE("the search of the page for the revision that broke a case") {
+  const GitFixture cli;
+  fs::create_directories(cli.folder() / "cases");
+  cli.write("cases/lock.e",
+            "range time 0 2\nfluent Open()\nfluent Unlocked()\nevent Pull()\nevent Unlock()\n"
+            "[time] HoldsAt(Unlocked(),time) -> Initiates(Pull(),Open(),time).\n"
+            "[time] Initiates(Unlock(),Unlocked(),time).\n"
+            "!HoldsAt(Open(),0).\n!HoldsAt(Unlocked(),0).\n");
+  cli.write("cases/suite.yaml",
+            "cases:\n  - {id: lock_opens, model: lock.e, constraints: 'HoldsAt(Open(),time)', "
+            "expect: {traces: 4}}\n");
+  cli.commit("first");
+  cli.git({"tag", "v1.2"});
+  cli.write("cases/lock.e", "; A lock.\n" + cli.read("cases/lock.e"));
+  cli.commit("Say what it is");
+  cli.replace("cases/lock.e", "HoldsAt(Unlocked(),time) -> ", "");
+  cli.commit("Open without a key");
+  cli.write("cases/lock.e", cli.read("cases/lock.e") + "; The end.\n");
+  cli.commit("Say that it ends");
+  check_bisect(cli, find(examples_of("history.md"), "cases/suite.yaml:lock_opens"));
 }
 
 }  // namespace
