@@ -34,6 +34,7 @@ struct DiffOptions {
   ModelDiffOptions models;
   bool no_traces = false;
   bool traces_only = false;
+  std::vector<std::string> renamings;
 };
 
 std::string quoted(const std::string& text) { return base::json_text(Json(base::printable(text))); }
@@ -93,19 +94,22 @@ int diff_models(const DiffOptions& options, RevisionKind old_kind, RevisionKind 
   const auto report = found->report();
   ComparedRevisions out;
   out.kind = "model";
-  out.differs = !found->facts.empty() || (found->settings && !found->settings->empty());
+  out.differs = !found->renamings.empty() || !found->facts.empty() ||
+                (found->settings && !found->settings->empty());
   if (found->traces) {
     out.differs = out.differs || found->traces->lost.answer == runtime::DifferenceAnswer::kFound ||
                   found->traces->gained.answer == runtime::DifferenceAnswer::kFound;
     report_unknown(*found, invocation);
   }
   if (invocation.options().json) {
-    out.fields = facts_fields(report, "declarations", "axioms") +
+    out.fields = "\"renamed\":" + renamings_json(found->renamings) + ',' +
+                 facts_fields(report, "declarations", "axioms") +
                  ",\"settings\":" + (found->settings ? settings_json(*found->settings) : "null") +
                  ",\"traces\":" + traces_json(*found) +
                  ",\"remarks\":" + base::json_text(Json(found->remarks));
   } else {
-    out.text = facts_text(report, "declarations", "axioms", options.stat);
+    out.text = renamings_text(found->renamings, options.stat) +
+               facts_text(report, "declarations", "axioms", options.stat);
     if (found->settings) out.text += settings_text(*found->settings, options.stat);
     for (const auto& remark : found->remarks) out.text += remark + '\n';
     out.text += traces_text(*found, options.stat);
@@ -336,6 +340,17 @@ int run(const DiffOptions& given, Invocation& invocation) {
   auto options = given;
   options.models.facts = !options.traces_only;
   options.models.traces = !options.no_traces;
+  options.models.find_renamings = options.gate.empty();
+  for (const auto& text : options.renamings) {
+    const auto renaming = parse_renaming(text);
+    if (!renaming) {
+      invocation.sink().error_about(
+          codes::kUsage, "--rename",
+          fmt::format("`{}` is not of the form OLD=NEW, two names", base::printable(text)));
+      return 0;
+    }
+    options.models.renamings.push_back(*renaming);
+  }
   const auto old_kind = kind_of(options.old_path), new_kind = kind_of(options.new_path);
   const bool models = old_kind && new_kind && has_traces(*old_kind) && has_traces(*new_kind);
   if (!options.gate.empty() && old_kind && (models || old_kind == new_kind)) {
@@ -371,6 +386,10 @@ void add_model_diff_options(OptionTable& command, DiffOptions& options) {
       .check(OneOf{{"decreasoner"}});
   command.option("--horizon", model.horizon, "Compare traces up to this timepoint")
       .check(IntRange{0, 1'000'000});
+  command
+      .option("--rename", options.renamings,
+              "OLD=NEW: a name (constant, region, body, ...) that is called NEW in the new model")
+      .list(ListForm::kOneEachTime);
   command.flag("--no-traces", options.no_traces,
                "Compare declarations and axioms only; nothing is solved");
   command.flag("--traces-only", options.traces_only, "Compare traces only");

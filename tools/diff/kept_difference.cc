@@ -25,6 +25,7 @@ std::optional<ModelDifference> compare_kept(const std::string& old_folder,
   Context own({.allow_outside = context.form().allow_outside}, context.stop());
   ModelDiffOptions options;
   options.traces = false;
+  options.find_renamings = true;
   auto found = compare_models(before->scenario.string(), RevisionKind::kScenario,
                               after->scenario.string(), RevisionKind::kScenario, options, own);
   if (!found) return std::nullopt;
@@ -44,7 +45,8 @@ std::optional<ModelDifference> compare_kept(const std::string& old_folder,
 
 std::string kept_text(const ModelDifference& found, bool stat) {
   const auto report = found.report();
-  auto out = to_text(report, compiler::FactKind::kDeclaration, "declarations", stat) +
+  auto out = renamings_text(found.renamings, stat) +
+             to_text(report, compiler::FactKind::kDeclaration, "declarations", stat) +
              to_text(report, compiler::FactKind::kAxiom, "axioms", stat);
   if (found.settings) out += settings_text(*found.settings, stat);
   return out;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "compiler/base/codes/files.h"
+#include "compiler/base/shown_text.h"
 #include "compiler/cnf/encoder.h"
 #include "compiler/compare/model_facts.h"
 #include "compiler/ground/grounder.h"
@@ -135,6 +136,7 @@ class ModelComparison {
     }
     if (!align_horizons()) return context_.sink().already_reported();
     if (!align_facts()) return context_.sink().already_reported();
+    if (!align_names()) return context_.sink().already_reported();
     if (options_.facts) {
       compiler::drop_equal_order(out_.old_side.facts, out_.new_side.facts);
       out_.facts = compiler::compare_facts(out_.old_side.facts, out_.new_side.facts);
@@ -178,6 +180,26 @@ class ModelComparison {
     }
     use_artifact_facts(out_.old_side);
     use_artifact_facts(out_.new_side);
+    return true;
+  }
+
+  bool align_names() {
+    for (const auto& one : options_.renamings) {
+      const auto refuse = [&](const ModelRevision& side, const std::string& name) {
+        context_.sink().error_about(
+            codes::kUsage, side.name,
+            fmt::format("--rename: the name `{}` does not occur here", base::printable(name)));
+        return false;
+      };
+      if (!has_name(out_.old_side, one.before)) return refuse(out_.old_side, one.before);
+      if (!has_name(out_.new_side, one.after)) return refuse(out_.new_side, one.after);
+    }
+    out_.renamings = with_variables(options_.renamings, out_.old_side, out_.new_side);
+    rename(out_.old_side, out_.renamings);
+    if (!options_.find_renamings || !options_.facts) return true;
+    const auto found = find_renamings(out_.old_side, out_.new_side);
+    rename(out_.old_side, found);
+    out_.renamings.insert(out_.renamings.end(), found.begin(), found.end());
     return true;
   }
 

@@ -7,6 +7,7 @@
 #include "compiler/compare/fact.h"
 #include "runtime/compare/trace_difference.h"
 #include "tools/app/model_options.h"
+#include "tools/diff/renaming.h"
 #include "tools/diff/revision.h"
 #include "tools/diff/settings_difference.h"
 
@@ -56,6 +57,10 @@ struct ModelDiffOptions {
   LoadRevision load;
   bool facts = true;   // compare declarations, axioms and, of scenarios, settings
   bool traces = true;  // compare meaning
+  /// Names of the old side that have others in the new one; and whether more of them are looked
+  /// for, if facts are compared. A gate does not look for them: a rule is about what is written.
+  std::vector<Renaming> renamings = {};
+  bool find_renamings = false;
   std::size_t list_limit = 200;
 };
 
@@ -64,6 +69,7 @@ struct ModelDifference {
   ModelRevision old_side, new_side;
   /// The horizons of both sides; traces are compared up to the smaller one.
   compiler::Timepoint old_horizon = 0, new_horizon = 0;
+  std::vector<Renaming> renamings;  // the old side has the new names
   compiler::FactDifference facts;
   /// Differences of the settings, where two scenarios and their facts are compared.
   std::optional<std::vector<SettingChange>> settings;
