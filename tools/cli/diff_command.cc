@@ -25,7 +25,7 @@ using compiler::FactKind;
 using Json = nlohmann::ordered_json;
 
 struct DiffOptions {
-  std::string old_path, new_path;
+  std::string old_path, new_path, tree;
   std::string textconv;
   std::string gate, markdown;
   bool fallback = false;
@@ -325,6 +325,9 @@ bool is_usable(const DiffOptions& options, Invocation& invocation) {
   if (options.textconv.empty() && options.new_path.empty()) {
     return refuse("two revisions are needed, or --textconv FILE");
   }
+  if (!options.tree.empty() && options.gate.empty()) {
+    return refuse("a third path goes with --gate and two revisions of git");
+  }
   if (options.no_traces && options.traces_only) {
     return refuse("--no-traces and --traces-only leave nothing to compare");
   }
@@ -332,6 +335,18 @@ bool is_usable(const DiffOptions& options, Invocation& invocation) {
     return refuse("--gate compares what its rules ask for: no --stat, --no-traces, --traces-only");
   }
   return true;
+}
+
+/// Are OLD and NEW revisions of git? Files and folders of these names come first.
+bool names_revisions(const DiffOptions& options) {
+  if (options.gate.empty()) return false;
+  std::error_code error;
+  const auto is_there = [&](const std::string& path) {
+    return std::filesystem::exists(path, error);
+  };
+  const bool no_files = !is_there(options.old_path) && !is_there(options.new_path) &&
+                        !kind_of(options.old_path) && !kind_of(options.new_path);
+  return !options.tree.empty() || no_files;
 }
 
 int run(const DiffOptions& given, Invocation& invocation) {
@@ -350,6 +365,10 @@ int run(const DiffOptions& given, Invocation& invocation) {
       return 0;
     }
     options.models.renamings.push_back(*renaming);
+  }
+  if (names_revisions(options)) {
+    return run_revision_gate({options.old_path, options.new_path, options.tree}, options.models,
+                             {options.gate, options.markdown}, invocation);
   }
   const auto old_kind = kind_of(options.old_path), new_kind = kind_of(options.new_path);
   const bool models = old_kind && new_kind && has_traces(*old_kind) && has_traces(*new_kind);
@@ -413,6 +432,8 @@ Command diff_command() {
       "  parallax diff out/monday out/tuesday --stat\n"
       "  parallax diff --textconv domain.e\n"
       "  parallax diff --gate rules.yaml old.e new.e --markdown gate.md\n"
+      "  parallax diff --gate rules.yaml ../base .\n"
+      "  parallax diff --gate rules.yaml main HEAD cases\n"
       "Exit code 1 if there is a difference, 0 if there is none. docs/git.md shows how git uses "
       "it.");
   command
@@ -421,6 +442,10 @@ Command diff_command() {
               "(.json)")
       .file();
   command.option("new", options->new_path, "The other revision").file();
+  command
+      .option("path", options->tree,
+              "With --gate and two revisions of git: the folder that is looked at")
+      .folder();
   command.heading("What is told");
   command.option("--textconv", options->textconv, "Print the canonical text of one file instead")
       .file();

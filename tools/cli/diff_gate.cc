@@ -2,19 +2,33 @@
 
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 
+#include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
+#include "compiler/base/path_gate.h"
 #include "compiler/base/subprocess.h"
+#include "compiler/base/temporary_folder.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/replaceable.h"
+#include "tools/diff/tree_gate.h"
+#include "tools/history/borrowed_repository.h"
+#include "tools/history/git.h"
 
 namespace parallax::tools {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Takes the name of a temporary folder out.
+void without_folder(const std::string& folder, std::string& text) {
+  for (auto at = text.find(folder); at != std::string::npos; at = text.find(folder, at)) {
+    text.erase(at, folder.size());
+  }
+}
 
 bool is_gate_report(std::string_view head) { return head.starts_with(kGateMark); }
 
@@ -53,9 +67,10 @@ std::string draw_witness(const DrawnWitness& witness, const fs::path& markdown,
   return {};
 }
 
-}  // namespace
+using Hold = std::function<base::Result<GateReport>(const harness::GateRules&)>;
 
-int run_gate(const GateInput& input, const GateFiles& files, Invocation& invocation) {
+/// Reads the rules, holds the change against them, and tells the answer.
+int tell_gate(const Hold& hold, const GateFiles& files, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto rules = harness::load_gate_rules(files.rules, invocation.files(), sink);
   if (!rules) return 0;
@@ -63,7 +78,7 @@ int run_gate(const GateInput& input, const GateFiles& files, Invocation& invocat
       !check_replaceable(files.markdown, is_gate_report, invocation.files(), sink)) {
     return 0;
   }
-  const auto report = hold_gate(input, *rules, invocation);
+  const auto report = hold(*rules);
   if (!report) return 0;
   if (!files.markdown.empty()) {
     const auto picture =
@@ -85,6 +100,65 @@ int run_gate(const GateInput& input, const GateFiles& files, Invocation& invocat
   }
   invocation.answered();  // what a limit left open is a rule that is not decidable
   return report->passes() ? 0 : 1;
+}
+
+}  // namespace
+
+int run_gate(const GateInput& input, const GateFiles& files, Invocation& invocation) {
+  const bool trees = is_tree(input.old_path) && is_tree(input.new_path);
+  const auto hold = [&](const harness::GateRules& rules) {
+    if (!trees) return hold_gate(input, rules, invocation);
+    return hold_tree_gate(input.old_path, input.new_path, rules, input.models, invocation);
+  };
+  return tell_gate(hold, files, invocation);
+}
+
+int run_revision_gate(const GateRevisions& revisions, const ModelDiffOptions& options,
+                      const GateFiles& files, Invocation& invocation) {
+  auto& sink = invocation.sink();
+  const auto refuse = [&](const std::string& subject, const char* why) {
+    sink.error_about(codes::kUsage, subject, why);
+    return 0;
+  };
+  const auto path = base::real_path(revisions.path.empty() ? "." : revisions.path);
+  std::error_code error;
+  const auto folder = fs::is_directory(path, error) ? path : path.parent_path();
+  const auto top = ask_git(folder.string(), {"rev-parse", "--show-toplevel"});
+  if (!top || top->empty()) {
+    return refuse(folder.string(), "it lies in no checkout of a git repository that may be read");
+  }
+  const auto before = commit_of(folder.string(), revisions.before, sink);
+  const auto after = commit_of(folder.string(), revisions.after, sink);
+  if (!before || !after) return 0;
+  const base::TemporaryFolder scratch("gate");
+  if (scratch.path().empty()) return refuse("", "no temporary folder can be made");
+  BorrowedRepository repository(scratch.path() / "old");
+  if (!repository.make(folder.string(), *before, sink)) return 0;
+  const auto new_tree = scratch.path() / "new";
+  if (!repository.add_tree(new_tree, *after)) {
+    return refuse(revisions.after, "git cannot check it out");
+  }
+  const auto inside = path.lexically_relative(base::real_path(*top));
+  const auto old_place = fs::path(repository.path()) / inside, new_place = new_tree / inside;
+  if (!fs::is_directory(old_place, error) || !fs::is_directory(new_place, error)) {
+    return refuse(revisions.path, "it is no folder in both revisions");
+  }
+  const auto hold = [&](const harness::GateRules& rules) {
+    auto report =
+        hold_tree_gate(old_place.string(), new_place.string(), rules, options, invocation);
+    if (report) {
+      report->old_name = revisions.before;
+      report->new_name = revisions.after;
+      for (auto& rule : report->rules) {
+        for (auto* text : {&rule.words, &rule.witness}) {
+          without_folder(old_place.string() + '/', *text);
+          without_folder(new_place.string() + '/', *text);
+        }
+      }
+    }
+    return report;
+  };
+  return tell_gate(hold, files, invocation);
 }
 
 }  // namespace parallax::tools

@@ -1,0 +1,223 @@
+// A gate over two folders.
+//
+// First the files of both are compared byte by byte. Then each scenario, and each model of a
+// manifest, is read as far as needed to know which files belong to it; only where one of these
+// differs are the two revisions compiled and compared. Cost: reading both folders, and one
+// comparison for each scenario or model that changed.
+
+#include "tools/diff/tree_gate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <system_error>
+
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/file_io.h"
+#include "compiler/base/file_names.h"
+#include "compiler/base/words.h"
+#include "compiler/syntax/loader.h"
+#include "harness/config/suite_manifest.h"
+
+namespace parallax::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool lies_there(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+bool is_run_folder(const fs::path& folder) {
+  return lies_there(folder / "journal.ndjson") || lies_there(folder / "report.json");
+}
+
+/// One folder: its files, and what of them is compared. Names are relative to it.
+class Tree {
+ public:
+  Tree(const std::string& folder, Context& context)
+      : folder_(base::absolute_name(folder)), context_(context) {
+    std::error_code error;
+    fs::recursive_directory_iterator at(folder_, error), end;
+    for (; !error && at != end; at.increment(error)) {
+      std::error_code unread;
+      const bool is_hidden = at->path().filename().string().starts_with('.');
+      if (at->is_directory(unread)) {
+        if (is_hidden || is_run_folder(at->path())) at.disable_recursion_pending();
+      } else if (!is_hidden && fs::is_regular_file(at->symlink_status(unread))) {
+        files_.insert(name_of(at->path()));
+      }
+    }
+    for (const auto& name : files_) note_subjects(name);
+  }
+
+  const std::set<std::string>& files() const { return files_; }
+  const std::map<std::string, RevisionKind>& subjects() const { return subjects_; }
+  fs::path path_of(const std::string& name) const { return folder_ / name; }
+
+  /// The files that belong to a scenario or model, also those that were looked for in vain.
+  std::set<std::string> inputs_of(const std::string& name) const {
+    base::SourceFiles files;
+    base::DiagnosticSink unread;  // who compares it reports
+    const bool allow_outside = context_.form().allow_outside;
+    const auto path = path_of(name);
+    std::vector<fs::path> models;
+    compiler::LoadOptions load;
+    load.allow_outside = allow_outside;
+    load.named_by = {path};
+    if (subjects_.at(name) == RevisionKind::kScenario) {
+      const auto scenario = harness::load_scenario(path, files, unread, allow_outside);
+      if (scenario) {
+        for (const auto& model : scenario->models) models.emplace_back(model.text);
+        for (const auto& model : scenario->simulator.models) models.emplace_back(model.text);
+      }
+    } else {
+      models.push_back(path);
+    }
+    if (!models.empty()) (void)compiler::load_model(models, load, files, unread);
+    std::set<std::string> out = {name};
+    for (const auto& input : files.inputs()) out.insert(name_of(base::absolute_name(input)));
+    return out;
+  }
+
+ private:
+  std::string name_of(const fs::path& path) const {
+    return path.lexically_relative(folder_).generic_string();
+  }
+
+  void note_subjects(const std::string& name) {
+    const auto ending = fs::path(name).extension();
+    if (ending != ".yaml" && ending != ".yml") return;
+    const bool allow_outside = context_.form().allow_outside;
+    const auto kind = harness::suite_file_kind(path_of(name), allow_outside);
+    if (kind == harness::SuiteFileKind::kScenario) {
+      subjects_.emplace(name, RevisionKind::kScenario);
+    } else if (kind == harness::SuiteFileKind::kManifest) {
+      base::SourceFiles files;
+      base::DiagnosticSink unread;
+      const auto manifest = harness::load_manifest(path_of(name), files, unread, allow_outside);
+      if (!manifest) return;
+      for (const auto& one : manifest->cases) {
+        for (const auto& model : one.models) note_model(base::absolute_name(model.text));
+      }
+    }
+  }
+
+  void note_model(const std::string& path) {
+    const auto kind = kind_of(path);
+    const auto name = name_of(path);
+    if (kind && has_traces(*kind) && files_.contains(name)) subjects_.emplace(name, *kind);
+  }
+
+  fs::path folder_;
+  Context& context_;
+  std::set<std::string> files_;
+  std::map<std::string, RevisionKind> subjects_;
+};
+
+bool same_content(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::file_size(a, error) != fs::file_size(b, error)) return false;
+  base::DiagnosticSink unread;
+  const auto x = base::read_file(a, unread), y = base::read_file(b, unread);
+  return x && y && *x == *y;
+}
+
+/// Files that only one of the folders has, or that differ.
+std::set<std::string> changed_files(const Tree& before, const Tree& after) {
+  std::set<std::string> out;
+  for (const auto& name : before.files()) {
+    const bool same =
+        after.files().contains(name) && same_content(before.path_of(name), after.path_of(name));
+    if (!same) out.insert(name);
+  }
+  for (const auto& name : after.files()) {
+    if (!before.files().contains(name)) out.insert(name);
+  }
+  return out;
+}
+
+bool meet(const std::set<std::string>& a, const std::set<std::string>& b) {
+  return std::any_of(a.begin(), a.end(), [&](const auto& one) { return b.contains(one); });
+}
+
+/// Compares what is at one place of both folders.
+std::vector<RuleResult> rules_at(const std::string& name, const Tree& before, const Tree& after,
+                                 const harness::GateRules& rules, const ModelDiffOptions& options,
+                                 GateReport& all, Context& context) {
+  Context own(context.form(), context.stop());
+  const GateInput input{before.path_of(name).string(), after.path_of(name).string(),
+                        before.subjects().at(name), after.subjects().at(name), options};
+  auto report = hold_gate(input, rules, own);
+  std::vector<RuleResult> out;
+  if (!report) {
+    const auto said = own.sink().sorted();
+    out.push_back({name, RuleOutcome::kUndecided,
+                   "it cannot be compared: " +
+                       (said.empty() ? std::string("it was stopped") : said.front().message)});
+    return out;
+  }
+  for (auto& rule : report->rules) {
+    if (rule.outcome == RuleOutcome::kKept) continue;
+    rule.rule = fmt::format("{}: {}", name, rule.rule);
+    out.push_back(std::move(rule));
+  }
+  for (const auto& remark : report->remarks) all.remarks.push_back(name + ": " + remark);
+  if (out.empty()) {
+    out.push_back({name, RuleOutcome::kKept,
+                   fmt::format("it changed, and {} kept",
+                               report->rules.size() == 1
+                                   ? "the rule is"
+                                   : fmt::format("all {} rules are", report->rules.size()))});
+  }
+  return out;
+}
+
+}  // namespace
+
+bool is_tree(const std::string& path) {
+  std::error_code error;
+  return fs::is_directory(path, error) && !is_run_folder(path);
+}
+
+base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
+                                        const std::string& new_folder,
+                                        const harness::GateRules& rules,
+                                        const ModelDiffOptions& options, Context& context) {
+  if (!rules.models) {
+    return context.sink().error(codes::kNoGateRules, rules.source, "models");
+  }
+  const Tree before(old_folder, context), after(new_folder, context);
+  const auto changed = changed_files(before, after);
+  GateReport out;
+  out.kind = "tree";
+  out.old_name = old_folder;
+  out.new_name = new_folder;
+  out.undecided_passes = rules.undecided_passes;
+  std::int64_t untouched = 0;
+  for (const auto& [name, kind] : before.subjects()) {
+    if (!after.subjects().contains(name)) {
+      out.rules.push_back(
+          {name, RuleOutcome::kUndecided, "it is gone: nothing is left to compare"});
+      continue;
+    }
+    if (!meet(before.inputs_of(name), changed) && !meet(after.inputs_of(name), changed)) {
+      ++untouched;
+      continue;
+    }
+    auto found = rules_at(name, before, after, rules, options, out, context);
+    std::move(found.begin(), found.end(), std::back_inserter(out.rules));
+  }
+  for (const auto& [name, kind] : after.subjects()) {
+    if (!before.subjects().contains(name)) out.remarks.push_back(name + " is new");
+  }
+  out.remarks.push_back(
+      fmt::format("no file of {} changed",
+                  base::counted(untouched, "scenario or model", "scenarios and models")));
+  return out;
+}
+
+}  // namespace parallax::tools
