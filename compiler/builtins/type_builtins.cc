@@ -2,6 +2,8 @@
 #include <map>
 #include <optional>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "compiler/builtins/builtin_call.h"
 #include "compiler/builtins/designator_links.h"
@@ -121,6 +123,35 @@ BuiltinResult typep(const BuiltinCall& c) {
   return c.values.boolean(*holds);
 }
 
+/// Nil only if the value certainly has another type: declarations name types that we do not know.
+BuiltinResult may_be(const BuiltinCall& c) {
+  if (c.values.kind(c.args[0]) == ValueKind::kUnknown) return c.values.truth();
+  return c.values.boolean(has_type(c, c.args[0], c.args[1]).value_or(true));
+}
+
+/// (%failure class keyword value...): a condition with slots.
+BuiltinResult make_failure(const BuiltinCall& c) {
+  Value value;
+  value.kind = ValueKind::kFailure;
+  value.text = c.values[c.args[0]].text;
+  for (std::size_t i = 1; i + 1 < c.args.size(); i += 2) {
+    value.keys.emplace_back(c.values[c.args[i]].text, c.args[i + 1]);
+  }
+  return c.values.intern(std::move(value));
+}
+
+/// (%slot condition initargs initial)
+BuiltinResult slot(const BuiltinCall& c) {
+  const auto& value = c.values[c.args[0]];
+  if (value.kind != ValueKind::kFailure) return c.wrong(0, "a condition");
+  const auto initargs = c.values.elements(c.args[1]).value_or(std::vector<ValueId>());
+  for (const auto& [name, item] : value.keys) {
+    const auto is_name = [&](ValueId initarg) { return c.values[initarg].text == name; };
+    if (std::any_of(initargs.begin(), initargs.end(), is_name)) return item;
+  }
+  return c.args[2];
+}
+
 /// A predicate by the name of the type that it tests.
 template <Test kTest>
 BuiltinResult is_of(const BuiltinCall& c) {
@@ -138,6 +169,9 @@ BuiltinResult endp(const BuiltinCall& c) {
 
 constexpr BuiltinEntry kTypeTable[] = {
     {{"typep", 2, 2}, typep},
+    {{"%may-be", 2, 2}, may_be},
+    {{"%failure", 1, 100}, make_failure},
+    {{"%slot", 3, 3}, slot},
     {{"listp", 1, 1}, is_of<is_list>},
     {{"consp", 1, 1}, is_of<is_cons>},
     {{"atom", 1, 1}, is_of<is_atom>},

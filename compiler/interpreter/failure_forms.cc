@@ -231,6 +231,27 @@ void form_retry(FormCompiler& c, DatumId form, FormItems /*items*/) {
   }
 }
 
+/// Leaves the failure with those of its slots that the plan reads; false: it reads none, and
+/// nothing was written.
+bool failure_with_slots(FormCompiler& c, DatumId form, FormItems items) {
+  const auto is_read = [&](DatumId item) {
+    return c.data.is_keyword(item) && c.defined.read_initargs.contains(c.data.name(item));
+  };
+  std::vector<std::size_t> read;
+  for (std::size_t i = 2; i + 1 < items.size(); i += 2) {
+    if (is_read(items[i])) read.push_back(i);
+  }
+  if (read.empty()) return false;
+  const auto name = c.failure_class(items[1]);
+  c.code.constant(c.values.symbol(name.value_or("plan-failure")), form);
+  for (const auto i : read) {
+    c.compile(items[i]);
+    c.compile(items[i + 1]);
+  }
+  c.code.builtin("%failure", static_cast<std::uint32_t>(1 + 2 * read.size()), form);
+  return true;
+}
+
 /// (fail 'class ...), (fail "text" ...), (fail), (fail e) with the variable of a handler.
 void form_fail(FormCompiler& c, DatumId form, FormItems items) {
   c.check_no_perform(form);
@@ -239,6 +260,10 @@ void form_fail(FormCompiler& c, DatumId form, FormItems items) {
   const bool quoted = has_class && c.data.head(items[1]) == "quote";
   if (has_class && !quoted) {
     c.compile(items[1]);
+    c.code.emit(PlanOp::kFailValue, 0, 0, form);
+    return;
+  }
+  if (quoted && failure_with_slots(c, form, items)) {
     c.code.emit(PlanOp::kFailValue, 0, 0, form);
     return;
   }
@@ -253,6 +278,7 @@ void form_make_condition(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() < 2 || c.data.head(items[1]) != "quote") {
     return c.refuse(form, "expected a quoted failure class");
   }
+  if (failure_with_slots(c, form, items)) return;
   const auto name = c.failure_class(items[1]);
   c.code.constant(name ? c.values.failure(*name) : c.values.nil(), form);
 }
@@ -363,6 +389,19 @@ void form_try_each(FormCompiler& c, DatumId form, FormItems items) {
 }
 
 }  // namespace
+
+void compile_reader(FormCompiler& c, DatumId form, const ConditionSlot& slot, DatumId condition) {
+  c.compile(condition);
+  std::vector<ValueId> initargs;
+  for (const auto& name : slot.initargs) initargs.push_back(c.values.keyword(name));
+  c.code.constant(c.values.list(initargs), form);
+  if (slot.initial) {
+    c.compile(*slot.initial);
+  } else {
+    c.nil(form);
+  }
+  c.code.builtin("%slot", 3, form);
+}
 
 std::span<const FormEntry> failure_forms() {
   static constexpr FormEntry kForms[] = {

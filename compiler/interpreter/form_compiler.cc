@@ -202,6 +202,10 @@ void FormCompiler::compile_list(DatumId form) {
   }
   if (const auto callee = find_callee(*this, items.front()))
     return compile_call(*this, form, *head, *callee, items.subspan(1));
+  if (const auto reader = defined.readers.find(data.key(items.front()));
+      reader != defined.readers.end() && items.size() == 2) {
+    return compile_reader(*this, form, reader->second, items[1]);
+  }
   if (is_ignored_call(data.package(items.front()), *head)) {
     check_no_perform(form);
     return nil(form);

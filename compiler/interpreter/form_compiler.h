@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -69,6 +70,12 @@ struct RetryCounter {
   DatumId number;
 };
 
+/// A slot of a condition that some function of the plan reads.
+struct ConditionSlot {
+  std::vector<std::string> initargs;  // without colon
+  std::optional<DatumId> initial;
+};
+
 /// The plan's definitions at top level, and the local functions met so far.
 struct PlanDefinitions {
   std::map<std::string, PlanFunction, std::less<>> functions;
@@ -78,6 +85,8 @@ struct PlanDefinitions {
   std::map<std::uint32_t, PlanMacro> local_macros;    // by unit
   std::map<std::uint32_t, PlanUnitSource> unwritten;  // by unit
   std::map<std::string, std::uint32_t, std::less<>> globals;
+  std::map<std::string, ConditionSlot, std::less<>> readers;  // of conditions, by key
+  std::set<std::string, std::less<>> read_initargs;           // of all their slots
   std::map<std::uint32_t, RetryCounter> counters;  // those met so far, by the name's serial
 };
 
@@ -188,6 +197,9 @@ std::span<const FormEntry> prolog_forms();      // solutions of `prolog`
 std::span<const FormEntry> call_forms();        // funcall, apply
 std::span<const FormEntry> local_forms();       // local functions and macros
 std::span<const FormEntry> world_forms();       // logging, belief, markers: nothing is done
+
+/// The value of a condition's slot.
+void compile_reader(FormCompiler& c, DatumId form, const ConditionSlot& slot, DatumId condition);
 
 /// All of them, by name.
 const std::map<std::string_view, FormFunction>& plan_forms();

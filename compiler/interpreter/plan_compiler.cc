@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,8 +35,11 @@ bool is_housekeeping(std::string_view head) {
 /// Collects the file's definitions, compiles them, then the forms to be run.
 class PlanCompiler {
  public:
-  PlanCompiler(LispText& text, ValueStore& values, base::DiagnosticSink& sink, bool interleave)
-      : text_(text), sink_(sink), c_(text, values, sink, interleave) {}
+  PlanCompiler(LispText& text, ValueStore& values, base::DiagnosticSink& sink, bool interleave,
+               const PlanBinding& binding)
+      : text_(text), sink_(sink), c_(text, values, sink, interleave) {
+    c_.code.code().classes = FailureClasses(binding.failures);
+  }
 
   base::Result<PlanCode> compile(const std::optional<std::string>& entry) {
     if (text_.forms.empty()) {
@@ -59,7 +63,8 @@ class PlanCompiler {
   }
 
  private:
-  /// Whether the plan tells designators apart, and whether it asks what they say.
+  /// Which names the plan has, whether it tells designators apart, and whether it asks what they
+  /// say.
   void note_designator_use() {
     static constexpr std::string_view kEquate[] = {"equate", "desig-equal"};
     static constexpr std::string_view kDescribe[] = {
@@ -73,8 +78,10 @@ class PlanCompiler {
       const auto datum = open.back();
       open.pop_back();
       const auto items = c_.data.children(datum);
+      if (c_.data.head(datum) == "define-condition") continue;
       open.insert(open.end(), items.begin(), items.end());
       if (!c_.data.is_symbol(datum)) continue;
+      named_.insert(c_.data.name(datum));
       auto& code = c_.code.code();
       code.identities = code.identities || is_one(kEquate, c_.data.name(datum));
       code.describes = code.describes || code.identities || is_one(kDescribe, c_.data.name(datum));
@@ -141,8 +148,29 @@ class PlanCompiler {
       if (const auto known = c_.failure_class(parent)) parents.push_back(*known);
     }
     if (parents.empty()) parents.emplace_back("condition");
+    if (items.size() > 3) note_slots(items[3]);
     if (c_.code.code().classes.add(c_.data.name(items[1]), std::move(parents))) return;
     c_.error(codes::kDuplicatePlanDefinition, items[1], c_.data.name(items[1]));
+  }
+
+  /// (name :initarg :key :reader function :initform form)...
+  void note_slots(DatumId slots) {
+    for (const auto written : c_.data.children(slots)) {
+      const auto parts = c_.data.children(written);
+      ConditionSlot slot;
+      std::vector<DatumId> readers;
+      for (std::size_t i = 1; i + 1 < parts.size(); i += 2) {
+        const auto option = c_.data.is_keyword(parts[i]) ? c_.data.name(parts[i]) : "";
+        if (option == "initarg") slot.initargs.push_back(c_.data.name(parts[i + 1]));
+        if (option == "initform") slot.initial = parts[i + 1];
+        if (option == "reader" || option == "accessor") readers.push_back(parts[i + 1]);
+      }
+      for (const auto reader : readers) {
+        if (!c_.data.is_symbol(reader) || !named_.contains(c_.data.name(reader))) continue;
+        c_.defined.readers.emplace(c_.data.key(reader), slot);
+        c_.defined.read_initargs.insert(slot.initargs.begin(), slot.initargs.end());
+      }
+    }
   }
 
   /// Lists the forms at top level, including those inside a `progn` or `eval-when` there.
@@ -311,14 +339,15 @@ class PlanCompiler {
   std::vector<Positioned> others_;      // no definitions, but perhaps calls of macros that define
   std::vector<Positioned> bare_forms_;  // forms to be run
   bool missing_ = false;                // of them, an expansion
+  std::set<std::string, std::less<>> named_;  // all names, but those in definitions of conditions
 };
 
 }  // namespace
 
 base::Result<PlanCode> compile_plan(LispText& text, const std::optional<std::string>& entry,
-                                    bool interleave, ValueStore& values,
+                                    bool interleave, const PlanBinding& binding, ValueStore& values,
                                     base::DiagnosticSink& sink) {
-  return PlanCompiler(text, values, sink, interleave).compile(entry);
+  return PlanCompiler(text, values, sink, interleave, binding).compile(entry);
 }
 
 }  // namespace parallax::compiler

@@ -13,6 +13,7 @@
 #include "compiler/lisp/lisp_data.h"
 #include "compiler/lisp/lisp_reader.h"
 #include "compiler/plan/failure_classes.h"
+#include "compiler/plan/plan_binding.h"
 
 namespace parallax::compiler {
 
@@ -154,10 +155,11 @@ struct PlanCode {
 
 /// Turns a plan into code for the unroller's machine. `entry` names the function to run; without it
 /// the bare top-level forms run, or else the last function defined; CPL006 if there is nothing to
-/// run. `interleave`: the branches of `par` take turns; otherwise they run in written order
-/// (W-PAR). Macros add their expansions to the text's data.
+/// run. What the run cannot come to is not looked at. `binding` names functions that carry actions
+/// out, and the table of failure classes. `interleave`: the branches of `par` take turns; otherwise
+/// they run in written order (W-PAR). Macros add their expansions to the text's data.
 base::Result<PlanCode> compile_plan(LispText& text, const std::optional<std::string>& entry,
-                                    bool interleave, ValueStore& values,
+                                    bool interleave, const PlanBinding& binding, ValueStore& values,
                                     base::DiagnosticSink& sink);
 
 }  // namespace parallax::compiler

@@ -1,5 +1,6 @@
 #include "compiler/plan/failure_classes.h"
 
+#include <span>
 #include <utility>
 
 namespace parallax::compiler {
@@ -8,19 +9,32 @@ namespace {
 struct Entry {
   const char* name;
   const char* parent;  // null for the root
+  const char* second_parent = nullptr;
 };
 
-constexpr Entry kBuiltIn[] = {
+constexpr Entry kLisp[] = {
     {"t", nullptr},
     {"condition", "t"},
+    {"simple-condition", "condition"},
     {"serious-condition", "condition"},
     {"error", "serious-condition"},
-    {"simple-error", "error"},
+    {"simple-error", "simple-condition", "error"},
     {"type-error", "error"},
     {"case-failure", "type-error"},
+    {"program-error", "error"},
+    {"arithmetic-error", "error"},
+    {"division-by-zero", "arithmetic-error"},
+};
+
+/// cram_language, cram_designators, cram_executive, cram_common_failures.
+constexpr Entry kCram[] = {
     {"plan-failure", "serious-condition"},
+    {"simple-plan-failure", "simple-condition", "plan-failure"},
     {"composite-failure", "plan-failure"},
-    {"simple-plan-failure", "plan-failure"},
+    {"common-lisp-error-envelope", "plan-failure"},
+    {"designator-error", "simple-error"},
+    {"designator-reference-failure", "simple-plan-failure", "designator-error"},
+    {"designator-goal-parsing-failure", "simple-plan-failure", "designator-error"},
     {"low-level-failure", "simple-plan-failure"},
     {"actionlib-action-timed-out", "low-level-failure"},
     {"navigation-low-level-failure", "low-level-failure"},
@@ -29,7 +43,6 @@ constexpr Entry kBuiltIn[] = {
     {"manipulation-low-level-failure", "low-level-failure"},
     {"manipulation-goal-not-reached", "manipulation-low-level-failure"},
     {"manipulation-pose-unreachable", "manipulation-low-level-failure"},
-    {"gripper-low-level-failure", "manipulation-low-level-failure"},
     {"gripper-closed-completely", "gripper-low-level-failure"},
     {"gripper-goal-not-reached", "gripper-low-level-failure"},
     {"torso-low-level-failure", "manipulation-low-level-failure"},
@@ -51,17 +64,34 @@ constexpr Entry kBuiltIn[] = {
     {"object-nowhere-to-be-found", "high-level-failure"},
     {"environment-unreachable", "high-level-failure"},
     {"environment-manipulation-impossible", "high-level-failure"},
-    {"designator-error", "simple-plan-failure"},
-    {"designator-reference-failure", "designator-error"},
+};
+
+constexpr Entry kOnlyDevel[] = {
+    {"gripper-low-level-failure", "low-level-failure"},
+    {"environment-manipulation-goal-not-reached", "manipulation-low-level-failure"},
+    {"perception-object-not-in-world", "perception-low-level-failure"},
+    {"searching-failed", "high-level-failure"},
+    {"fetching-failed", "high-level-failure"},
+    {"delivering-failed", "high-level-failure"},
+};
+
+constexpr Entry kOnly2020[] = {
+    {"gripper-low-level-failure", "manipulation-low-level-failure"},
 };
 
 }  // namespace
 
-FailureClasses::FailureClasses() {
-  for (const auto& entry : kBuiltIn) {
-    std::vector<std::string> parents;
-    if (entry.parent != nullptr) parents.emplace_back(entry.parent);
-    parents_.emplace(entry.name, std::move(parents));
+FailureClasses::FailureClasses(FailureTable table) {
+  const auto own = table == FailureTable::kDevel ? std::span<const Entry>(kOnlyDevel)
+                                                 : std::span<const Entry>(kOnly2020);
+  for (const auto entries : {std::span<const Entry>(kLisp), std::span<const Entry>(kCram), own}) {
+    for (const auto& entry : entries) {
+      // A plan may define CRAM's classes anew, those of Lisp not.
+      if (entries.data() == kLisp) added_.emplace(entry.name);
+      auto& parents = parents_[entry.name];
+      if (entry.parent != nullptr) parents.emplace_back(entry.parent);
+      if (entry.second_parent != nullptr) parents.emplace_back(entry.second_parent);
+    }
   }
 }
 
@@ -75,12 +105,16 @@ std::optional<std::string> FailureClasses::canonical(std::string_view name) cons
 }
 
 bool FailureClasses::add(std::string_view name, std::vector<std::string> parents) {
-  if (knows(name)) return false;
-  return parents_.emplace(name, std::move(parents)).second;
+  for (const auto& parent : parents) {
+    if (is_a(parent, name)) return false;
+  }
+  if (!added_.emplace(name).second) return false;
+  parents_.insert_or_assign(std::string(name), std::move(parents));
+  return true;
 }
 
 bool FailureClasses::is_a(std::string_view name, std::string_view ancestor) const {
-  std::vector<std::string_view> open = {name};  // a class is added after its parents: no cycles
+  std::vector<std::string_view> open = {name};  // `add` lets no class be above itself
   while (!open.empty()) {
     const auto current = open.back();
     open.pop_back();

@@ -36,6 +36,7 @@ class BindingParser {
     std::string target;
     SourceRange source;
   };
+  void parse_failures();
   void parse_entry();
   void parse_query(std::size_t begin);
   void parse_object(std::size_t begin);
@@ -412,9 +413,19 @@ void BindingParser::expand_aliases() {
   }
 }
 
+void BindingParser::parse_failures() {
+  if (!at_.take("failures:")) return;
+  if (at_.take_word("2020")) {
+    out_.failures = FailureTable::k2020;
+  } else if (!at_.take_word("devel")) {
+    at_.expected("`devel` or `2020`, the failure classes of CRAM,");
+  }
+  at_.skip_blanks();
+}
+
 base::Result<PlanBinding> BindingParser::parse() {
   at_.enter(BindingCursor::kPreamble);
-  at_.skip_blanks();
+  parse_failures();
   if (!at_.at_end()) {
     at_.expected("an entry that starts with `motion`, `action`, `query` or `object`");
   }

@@ -10,6 +10,7 @@
 #include "compiler/base/result.h"
 #include "compiler/base/source_file.h"
 #include "compiler/base/word_table.h"
+#include "compiler/plan/failure_classes.h"
 #include "compiler/plan/formula_tree.h"
 
 namespace parallax::compiler {
@@ -81,6 +82,7 @@ struct PlanBinding {
   std::vector<BindingEntry> entries;   // in source order, aliases expanded
   std::vector<QueryBinding> queries;   // in source order
   std::vector<ObjectBinding> objects;  // the first that fits is taken
+  FailureTable failures = FailureTable::kDevel;
   /// The types of one kind, each once, in source order; for messages.
   std::vector<std::string> types(PerformKind kind) const;
 };
@@ -101,6 +103,7 @@ struct PlanBinding {
 ///     object (:type ?y) ok: TypeOf(?o,?y) & Perceived(?o) @t  returns ?o
 ///     query object-in-hand (?o) ok: exists arm. Holding(arm,?o) @t
 ///
+/// In front of the entries `failures: devel` or `failures: 2020` chooses CRAM's failure classes.
 /// A key without a variable binds the usual one: :target ?p, :object ?o, another its first letter.
 /// A bare `place` in the formula repeats `place(...)` of the event. Reports E4001 (syntax), E4002
 /// (bound twice), E4003 (unbound variable), E4004 (alias of nothing), several per run.

@@ -23,7 +23,7 @@ constexpr ClassAndParent kClasses[] = {
     {"manipulation-low-level-failure", "low-level-failure"},
     {"manipulation-goal-not-reached", "manipulation-low-level-failure"},
     {"manipulation-pose-unreachable", "manipulation-low-level-failure"},
-    {"gripper-low-level-failure", "manipulation-low-level-failure"},
+    {"gripper-low-level-failure", "low-level-failure"},
     {"gripper-goal-not-reached", "gripper-low-level-failure"},
     {"perception-low-level-failure", "low-level-failure"},
     {"perception-object-not-found", "perception-low-level-failure"},
