@@ -6,6 +6,7 @@
 #include <set>
 
 #include "compiler/builtins/unknown_values.h"
+#include "compiler/plan/failure_classes.h"
 
 namespace parallax::compiler {
 namespace {
@@ -190,6 +191,23 @@ ValueId ValueStore::failure(std::string_view failure_class) {
   value.kind = ValueKind::kFailure;
   value.text = failure_class;
   return intern(std::move(value));
+}
+
+ValueId ValueStore::envelope(ValueId error) {
+  Value value;
+  value.kind = ValueKind::kFailure;
+  value.text = kErrorEnvelope;
+  value.keys = {{"error", error}};
+  return intern(std::move(value));
+}
+
+std::optional<ValueId> ValueStore::enveloped(ValueId failure) const {
+  const auto& value = values_[failure];
+  if (value.kind != ValueKind::kFailure || value.text != kErrorEnvelope) return std::nullopt;
+  for (const auto& [slot, error] : value.keys) {
+    if (slot == "error") return error;
+  }
+  return std::nullopt;  // the plan made it itself
 }
 
 ValueId ValueStore::not_given() {

@@ -80,7 +80,7 @@ struct Value {
   PlanFunctionValue function;  // kFunction; others: the shortest life of a function in it
   PlanPose pose;               // kPose and kTransform; kVector and kQuaternion use their part
   DesignatorKind designator = DesignatorKind::kMotion;
-  // kDesignator: in written order; kModel: the description that it was sought by
+  // kDesignator: in written order; kModel: the description that it was sought by; kFailure: slots
   std::vector<std::pair<std::string, ValueId>> keys;
   std::uint32_t identity = 0;  // kDesignator: tells it from another one with the same keys
   ModelValueId model;
@@ -112,6 +112,10 @@ class ValueStore {
   ValueId cons(ValueId head, ValueId tail);
   ValueId list(const std::vector<ValueId>& items);
   ValueId failure(std::string_view failure_class);
+  /// The failure that a Lisp error becomes where it leaves a task.
+  ValueId envelope(ValueId error);
+  /// The error in an envelope; none for any other value.
+  std::optional<ValueId> enveloped(ValueId failure) const;
   ValueId model(ModelValueId id);
   ValueId not_given();
   ValueId multiple(const std::vector<ValueId>& all);

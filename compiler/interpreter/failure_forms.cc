@@ -54,6 +54,7 @@ void handling(FormCompiler& c, DatumId form, const std::vector<HandlerSource>& h
   c.code.set_exit(start);
   c.code.drop(form);
   std::vector<HandlerClause> table;
+  std::vector<HandlerClause> opening;
   for (const auto& handler : handlers) {
     const auto unit = compile_handler(c, handler, start);
     for (const auto name : handler.classes) {
@@ -69,6 +70,8 @@ void handling(FormCompiler& c, DatumId form, const std::vector<HandlerSource>& h
       table.push_back({*known, unit});
     }
   }
+  for (const auto& clause : table) opening.push_back({clause.failure_class, clause.unit, true});
+  table.insert(table.begin(), opening.begin(), opening.end());
   c.code.push_handlers(c.code.add_handlers(std::move(table)), form);
   c.code.show(retry);
   c.compile_body(body);

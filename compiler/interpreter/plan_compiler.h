@@ -121,6 +121,9 @@ struct ExitTarget {
 struct HandlerClause {
   std::string failure_class;
   std::uint32_t unit = 0;
+  // `with-failure-handling` takes the error in an envelope as well: the first such clause that fits
+  // it is asked before any other.
+  bool opens = false;
 };
 
 /// The branches of a `par` or `pursue`, each a unit.

@@ -91,7 +91,10 @@ class KeyWriter {
 void visit_part(const std::vector<PlanFrame>& frames, const std::vector<ValueId>& stack,
                 const std::function<void(ValueId)>& visit) {
   for (const auto value : stack) visit(value);
-  for (const auto& frame : frames) visit(frame.pending.value);
+  for (const auto& frame : frames) {
+    visit(frame.pending.value);
+    visit(frame.failure);
+  }
 }
 
 void visit_pars(const std::vector<PlanPar>& pars, const std::function<void(ValueId)>& visit) {

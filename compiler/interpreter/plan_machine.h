@@ -140,6 +140,7 @@ struct StopProof {  // the goal of a `prolog` form
 struct StopDone {};
 struct StopFailed {
   std::string failure_class;
+  std::string cause;  // the class, or that of the error in an envelope
 };
 struct StopBound {
   std::string form;
@@ -190,6 +191,8 @@ class PlanMachine {
   std::vector<std::uint32_t> take_handlers_run() { return std::exchange(handlers_run_, {}); }
   /// By handler table: has any state had it around itself?
   const std::vector<bool>& handlers_met() const { return handlers_met_; }
+  /// The failure as those outside of the task see it: a Lisp error in its envelope.
+  ValueId leaving_task(ValueId failure) const;
   /// Inside a `par`: the running branch waits at this perform, others run up to theirs. None: run
   /// goes on with another branch.
   std::optional<PlanStop> wait(PlanState& state, const StopPerform& perform);

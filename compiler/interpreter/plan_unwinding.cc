@@ -2,7 +2,7 @@
 // conditions are signalled before the stack is unwound: it sees the outer handlers only, and the
 // clean-ups of the body run once it has decided. That holds within one task: a failure that finds
 // no handler there ends the task with its clean-ups, and only then the handlers around it are
-// asked.
+// asked. A Lisp error leaves a task in an envelope, which is a plan failure.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -130,8 +130,13 @@ PlanMachine::Step PlanMachine::search(PlanState& state, ValueId failure, std::si
       if (border) return leave_task(state, g, failure);
       if (guard.kind != GuardKind::kHandlers) continue;
       const auto& clauses = code_.handlers[guard.index];
-      for (auto i = std::exchange(clause, 0); i < clauses.size(); ++i) {
-        if (!code_.classes.is_a(values_[failure].text, clauses[i].failure_class)) continue;
+      const auto error = values_.enveloped(failure);
+      const auto first = std::exchange(clause, 0);
+      for (auto i = first; i < clauses.size(); ++i) {
+        const bool opens = clauses[i].opens;
+        if (opens && (!error || first > 0)) continue;
+        const auto signalled = opens ? *error : failure;
+        if (!code_.classes.is_a(values_[signalled].text, clauses[i].failure_class)) continue;
         drop_abandoned(state, g);
         auto handler = frame_on_top(state, clauses[i].unit, guard.frame, FrameKind::kHandler);
         handler.skip_to = static_cast<std::uint32_t>(g);
@@ -139,7 +144,7 @@ PlanMachine::Step PlanMachine::search(PlanState& state, ValueId failure, std::si
         handler.failure = failure;
         handlers_run_.push_back(clauses[i].unit);
         state.frames.push_back(handler);
-        state.stack.push_back(failure);
+        state.stack.push_back(signalled);
         return {};
       }
     }
@@ -160,6 +165,10 @@ PlanMachine::Step PlanMachine::leave_task(PlanState& state, std::size_t border, 
     return unwind(state, state.frames[*cleanup].pending);
   }
   return unwind(state, {PendingKind::kFail, 0, 0, failure});
+}
+
+ValueId PlanMachine::leaving_task(ValueId failure) const {
+  return code_.classes.is_lisp_error(values_[failure].text) ? values_.envelope(failure) : failure;
 }
 
 /// A jump. Out of the clean-up of an evaporated branch into that branch, of which nothing else is
@@ -194,6 +203,7 @@ PlanMachine::Step PlanMachine::unwind(PlanState& state, Pending pending) {
     return {};
   }
   if (crosses) {
+    pending.value = leaving_task(pending.value);
     const bool branch = !state.pars.empty() && target == state.pars.back().guards;
     if (branch) return fail_branch(state, pending.value);
     state.frames.resize(std::size_t{pending.frame} + 1);
@@ -201,7 +211,10 @@ PlanMachine::Step PlanMachine::unwind(PlanState& state, Pending pending) {
     state.stack.resize(last.height);
     return search(state, pending.value, state.guards.size());
   }
-  if (!exits) return StopFailed{values_[pending.value].text};
+  if (!exits) {
+    const auto cause = values_.enveloped(pending.value).value_or(pending.value);
+    return StopFailed{values_[pending.value].text, values_[cause].text};
+  }
   state.frames.resize(std::size_t{pending.frame} + 1);
   auto& frame = state.frames.back();
   const auto& exit = code_.exits[pending.exit];

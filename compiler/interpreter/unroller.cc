@@ -117,7 +117,7 @@ std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform&
   location.calls = calls(state);
   const auto macros = macro_calls(data_, stop.form);
   location.calls.insert(location.calls.end(), macros.begin(), macros.end());
-  const auto failure = values_.failure(location.failure_class);
+  const auto failure = machine_.leaving_task(values_.failure(location.failure_class));
   const auto id = graph_.locations.add(std::move(location));
   locations_.emplace(std::move(key), id);
   auto result = values_.truth();
@@ -146,7 +146,7 @@ void Explorer::fail_by_reason(LocationId id, const PlanState& state, DatumId for
   auto edge = Job::Edge::kFailure;
   auto owner = id.index();
   for (std::size_t way = 0; way < ways.size(); ++way) {
-    const auto failure = values_.failure(ways[way].failure_class);
+    const auto failure = machine_.leaving_task(values_.failure(ways[way].failure_class));
     if (way + 1 < ways.size()) {
       const auto next = free_branch("it fails with " + ways[way].failure_class, form);
       if (way == 0) {
@@ -227,7 +227,7 @@ std::optional<PlanTarget> Explorer::stopped(PlanState& state, const PlanStop& st
   if (const auto* at = std::get_if<StopPerform>(&stop)) return perform(state, *at);
   if (const auto* at = std::get_if<StopQuestion>(&stop)) return question(state, *at);
   if (const auto* at = std::get_if<StopFailed>(&stop))
-    return terminal(TerminalKind::kFailed, at->failure_class, std::nullopt);
+    return terminal(TerminalKind::kFailed, at->cause, std::nullopt);
   if (const auto* at = std::get_if<StopBound>(&stop))
     return terminal(TerminalKind::kBound, at->form, at->at);
   if (std::holds_alternative<StopTurn>(stop)) return take_turns(state);
@@ -296,6 +296,7 @@ void Explorer::write_handlers() {
   for (std::size_t table = 0; table < code_.handlers.size(); ++table) {
     if (!machine_.handlers_met()[table]) continue;
     for (const auto& clause : code_.handlers[table]) {
+      if (clause.opens) continue;  // it stands there once more
       const auto source = data_.source(code_.units[clause.unit].source);
       const auto [entry, fresh] = in_order.try_emplace({source.begin, clause.unit});
       auto& handler = entry->second;

@@ -14,6 +14,7 @@ struct ClassAndParent {
 };
 constexpr ClassAndParent kClasses[] = {
     {"simple-plan-failure", "plan-failure"},
+    {"common-lisp-error-envelope", "plan-failure"},
     {"composite-failure", "plan-failure"},
     {"low-level-failure", "simple-plan-failure"},
     {"high-level-failure", "simple-plan-failure"},

@@ -1,6 +1,8 @@
 #include <exception>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "tests/support/interpreter/evaluator.h"
 #include "tests/support/interpreter/jumps.h"
@@ -10,6 +12,9 @@ namespace {
 
 constexpr const char* kRetry = "%retry";
 
+/// In front of the class of a Lisp error that has left a task.
+constexpr std::string_view kEnveloped = "enveloped ";
+
 const Datum& unquoted(const Datum& datum) {
   return datum.head() == "quote" ? datum.items[1] : datum;
 }
@@ -17,6 +22,7 @@ const Datum& unquoted(const Datum& datum) {
 }  // namespace
 
 bool Evaluator::below(std::string failure, const std::string& ancestor) const {
+  if (failure.starts_with(kEnveloped)) failure = "common-lisp-error-envelope";
   for (;;) {
     if (failure == ancestor) return true;
     const auto parent = parents_.find(failure);
@@ -59,28 +65,38 @@ void Evaluator::signal(const std::string& failure) {
     const auto& handler = active[i];
     handlers_.assign(active.begin(), active.begin() + static_cast<std::ptrdiff_t>(i));
     blocks_ = handler.blocks;
-    if (handler.task) throw TaskFailed{handler.id, failure};
+    if (handler.task) {
+      const bool lisp = below(failure, "error") && !below(failure, "plan-failure");
+      throw TaskFailed{handler.id, lisp ? std::string(kEnveloped) + failure : failure};
+    }
     if (handler.clauses == nullptr) throw Leave{handler.id, symbol_item("%failed")};
-    std::vector<const Datum*> called;
-    for (const auto& written : *handler.clauses) {
-      for (const auto& name : named_classes(written)) {
-        if (below(failure, name)) called.push_back(&clause_called(*handler.clauses, name));
+    std::vector<std::pair<const Datum*, std::string>> called;  // and with what
+    const bool enveloped = failure.starts_with(kEnveloped);
+    const auto error = enveloped ? failure.substr(kEnveloped.size()) : "";
+    for (const auto& [signalled, all] : {std::pair(error, false), std::pair(failure, true)}) {
+      if (!all && !enveloped) continue;
+      for (const auto& written : *handler.clauses) {
+        for (const auto& name : named_classes(written)) {
+          if (!all && !called.empty()) continue;
+          if (!below(signalled, name)) continue;
+          called.emplace_back(&clause_called(*handler.clauses, name), signalled);
+        }
       }
     }
-    for (const auto* function : called) {
+    for (const auto& [function, signalled] : called) {
       const auto& clause = *function;
       auto scope = std::make_shared<Scope>();
       scope->outer = handler.scope;
       scope->variables[kRetry] = number_item(handler.id);
       if (!clause.items[1].items.empty()) {
-        PlanItem value = symbol_item(failure);
+        PlanItem value = symbol_item(signalled);
         value.kind = PlanItem::Kind::kFailure;
         scope->variables[clause.items[1].items[0].text] = value;
       }
       body(clause.items, 2, scope);  // it declined if that returns: the next clause, then outwards
     }
   }
-  throw Unhandled{failure};
+  throw Unhandled{failure.starts_with(kEnveloped) ? failure.substr(kEnveloped.size()) : failure};
 }
 
 PlanItem Evaluator::handling(const std::vector<Datum>& clauses, const Datum& form, std::size_t from,
