@@ -34,7 +34,7 @@ void let(FormCompiler& c, DatumId form, FormItems items, bool sequential) {
   for (const auto& binding : bound) {
     if (!sequential) show_variable(c, binding, form);
   }
-  c.compile_body(c.skip_declarations(items.subspan(2)));
+  c.compile_declared(items.subspan(2));
   close_variables(c, scope, count, form);
 }
 
@@ -116,7 +116,7 @@ void form_destructuring_bind(FormCompiler& c, DatumId form, FormItems items) {
   c.compile(items[2]);
   c.code.emit(PlanOp::kExpectList, 0, 0, form);
   destructure(c, form, items[1], height);
-  c.compile_body(c.skip_declarations(items.subspan(3)));
+  c.compile_declared(items.subspan(3));
   close_variables(c, scope, c.code.height() - 1 - height, form);
 }
 

@@ -121,6 +121,9 @@ class FormCompiler {
   std::optional<DatumId> expand(const PlanMacro& macro, DatumId call);
   /// A dotted list is data: as code it would be read as if the dot were not there.
   void check_dots(DatumId form);
+  /// A body behind its declarations: a variable that has another type than declared is a Lisp
+  /// error.
+  void compile_declared(FormItems body);
   /// Drops docstrings and declarations at the head of a body.
   FormItems skip_declarations(FormItems body) const;
 

@@ -182,12 +182,12 @@ void compile_function_body(FormCompiler& c, const PlanFunction& function,
   const auto flags = compile_defaults(c, function);
   if (task) {
     ++c.tags;
-    c.compile_body(c.skip_declarations(body));
+    c.compile_declared(body);
     --c.tags;
   } else {
     const auto block = c.code.open_block(block_name);
     if (function.task) c.code.open_task(function.source);
-    c.compile_body(c.skip_declarations(body));
+    c.compile_declared(body);
     if (function.task) c.code.pop_guard(function.source);
     c.code.close_block(block);
   }

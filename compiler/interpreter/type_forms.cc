@@ -143,7 +143,34 @@ void form_handler_bind(FormCompiler& c, DatumId form, FormItems items) {
   c.code.squeeze(c.code.height() - 1 - height, form);
 }
 
+/// (type t variable...), the only declaration that SBCL checks and plans use.
+void check_declaration(FormCompiler& c, DatumId declaration) {
+  const auto parts = c.data.children(declaration);
+  if (c.data.head(declaration) != "type" || parts.size() < 3) return;
+  for (const auto name : parts.subspan(2)) {
+    if (!c.data.is_symbol(name)) continue;
+    const auto* variable = c.code.lookup(BindingKind::kVariable, c.data.name(name));
+    if (variable == nullptr) continue;
+    c.code.load(*variable, declaration);
+    c.code.constant(c.datum_value(parts[1]), declaration);
+    c.code.builtin("%may-be", 2, declaration);
+    fail_if_nil(c, "type-error", declaration);
+    c.code.drop(declaration);
+  }
+}
+
 }  // namespace
+
+void FormCompiler::compile_declared(FormItems body) {
+  const auto rest = skip_declarations(body);
+  for (const auto form : body.first(body.size() - rest.size())) {
+    if (data.head(form) != "declare") continue;
+    for (const auto declaration : data.children(form).subspan(1)) {
+      check_declaration(*this, declaration);
+    }
+  }
+  compile_body(rest);
+}
 
 std::span<const FormEntry> type_forms() {
   static constexpr FormEntry kForms[] = {

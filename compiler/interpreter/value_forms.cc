@@ -43,7 +43,7 @@ void form_multiple_value_bind(FormCompiler& c, DatumId form, FormItems items) {
     }
     bind_variable(c, names[i], height + i, form);
   }
-  c.compile_body(c.skip_declarations(items.subspan(3)));
+  c.compile_declared(items.subspan(3));
   close_variables(c, scope, count, form);
 }
 
