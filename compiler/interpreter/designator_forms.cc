@@ -25,6 +25,12 @@ void designator_value(FormCompiler& c, DatumId value) {
   if (c.data.is_symbol(value)) {
     const auto& name = c.data.name(value);
     const bool special = name.size() > 2 && name.front() == '*' && name.back() == '*';
+    const auto global = c.defined.globals.find(c.data.key(value));
+    if (special && global != c.defined.globals.end()) {
+      // CRAM's macro takes the value that the global has when the plan is loaded.
+      c.code.emit(PlanOp::kLoadGlobal, global->second, 1, value);
+      return c.code.adjust(1);
+    }
     if (name.front() == '?' || special) return c.compile(value);
     // CRAM makes keywords of plain symbols in a designator.
     if (name == "nil" || name == "t") return c.compile(value);

@@ -24,7 +24,7 @@ enum class PlanOp : std::uint8_t {
   kConstant,      // push value a
   kLoad,          // push variable b of the frame a static links out
   kStore,         // variable b of the frame a links out := top, which stays
-  kLoadGlobal,    // push global a
+  kLoadGlobal,    // push global a; b = 1: its own value, whatever has rebound it
   kStoreGlobal,   // global a := pop
   kBindSpecial,   // global a means variable b of this frame from here on
   kStoreSpecial,  // meaning of global a in this task := top, which stays

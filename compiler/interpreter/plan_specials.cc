@@ -7,7 +7,8 @@
 namespace parallax::compiler {
 
 PlanMachine::Step PlanMachine::load_global(PlanState& state, const PlanInstruction& instruction) {
-  if (const auto rebound = special(state, instruction.a)) {
+  const auto rebound = instruction.b == 0 ? special(state, instruction.a) : std::nullopt;
+  if (rebound) {
     state.stack.push_back(state.stack[*rebound]);
     return {};
   }

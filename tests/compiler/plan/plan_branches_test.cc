@@ -200,7 +200,8 @@ TEST_CASE("branches: a clean-up of a branch that was ended goes nowhere but to i
       "((plan-failure (e) (sig) (return))) (unwind-protect (go1) (go2))) (pick)))");
   CHECK(Ways(retried, {"PickUp(left,box)", "Go(r2)"}).all.contains("PickUp(left,box) Go(r2) DONE"));
   const auto special = by_turns(
-      "(defparameter *to* *p1*)(defun there () (perform (a motion (type going) (target *to*))))"
+      "(defparameter *to* *p1*)(defun there () (let ((?to *to*)) (perform (a motion (type going) "
+      "(target ?to)))))"
       "(let ((*to* *p2*)) (with-failure-handling ((plan-failure (e) (there) (return))) "
       "(par (let ((*to* *p1*)) (unwind-protect (sig) (there))) (pick))))");
   const auto all = Ways(special, {"PickUp(left,box)"}).all;

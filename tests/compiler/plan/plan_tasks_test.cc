@@ -74,7 +74,7 @@ TEST_CASE("tasks: a top-level function is not called from a plan") {
 TEST_CASE("tasks: a rebound special is seen by what is called in the same task only") {
   const std::string text =
       "(defparameter *where* *p1*)"
-      "(defun plain () (perform (a motion (type going) (target *where*))))"
+      "(defun plain () (let ((?to *where*)) (perform (a motion (type going) (target ?to)))))"
       "(def-cram-function own () (plain))"
       "(let ((*where* *p2*)) (plain) (own) (setf *where* *p1*) (plain))(plain)";
   CHECK(with_prelude(text).events("++++") ==
@@ -82,11 +82,10 @@ TEST_CASE("tasks: a rebound special is seen by what is called in the same task o
   // A handler runs where the failure was signalled: it sees the bindings there.
   const auto handled = with_prelude(
       "(defparameter *where* *p1*)"
-      "(with-failure-handling ((plan-failure (e) (perform (a motion (type going) (target "
-      "*where*))) "
-      "(return)))"
+      "(defun there () (let ((?to *where*)) (perform (a motion (type going) (target ?to)))))"
+      "(with-failure-handling ((plan-failure (e) (there) (return)))"
       " (let ((*where* *p2*)) (sig)))"
-      "(perform (a motion (type going) (target *where*)))");
+      "(there)");
   CHECK(handled.events("-++") == Strings{"Signal()", "Go(r2)", "Go(r1)", "DONE"});
 }
 

@@ -205,11 +205,13 @@ PlanItem Evaluator::designator(const Datum& form, const ScopePtr& scope) {
   return out;
 }
 
-/// Symbols stand for themselves; variables, special variables and designators are evaluated.
+/// Symbols stand for themselves; variables, globals and designators are evaluated.
 PlanItem Evaluator::designator_value(const Datum& datum, const ScopePtr& scope) {
   if (datum.is_list()) return eval(datum, scope);
-  const bool variable = datum.kind == Datum::Kind::kSymbol &&
-                        (datum.text.starts_with("?") || datum.text.starts_with("*"));
+  const bool symbol = datum.kind == Datum::Kind::kSymbol;
+  // CRAM's macro takes the value that the global was defined with.
+  if (symbol && datum.text.starts_with("*")) return globals_->variables.at(datum.text);
+  const bool variable = symbol && datum.text.starts_with("?");
   if (variable || datum.kind != Datum::Kind::kSymbol) return eval(datum, scope);
   return symbol_item(datum.text);
 }
