@@ -52,13 +52,16 @@ void branches_by_turns(FormCompiler& c, DatumId form, FormItems branches, bool p
   c.code.par(std::move(units), pursue, form);
 }
 
+void in_order(FormCompiler& c, DatumId form) {
+  c.warning(codes::kParallelInOrder, form, c.form_name(form));
+  c.code.code().gaps.push_back({fmt::format("the other orders of `{}`", c.form_name(form)), form});
+}
+
 void form_par(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() > 2 && c.interleave) {
     return branches_by_turns(c, form, items.subspan(1), false);
   }
-  if (items.size() > 2) {
-    c.warning(codes::kParallelInOrder, form, c.form_name(form));
-  }
+  if (items.size() > 2) in_order(c, form);
   if (items.size() < 2) return c.refuse(form, "without branches it waits for nothing and fails");
   for (std::size_t i = 1; i < items.size(); ++i) {
     task(c, items[i], items.subspan(i, 1));
@@ -75,13 +78,21 @@ void form_pursue(FormCompiler& c, DatumId form, FormItems items) {
   }
   task(c, items[1], items.subspan(1, 1));
   if (items.size() == 2) return;
-  c.warning(codes::kParallelInOrder, form, c.form_name(form));
+  in_order(c, form);
   const auto over = c.code.jump(PlanOp::kJump, form);
   for (std::size_t i = 2; i < items.size(); ++i) {
     task(c, items[i], items.subspan(i, 1));
     c.code.drop(items[i]);
   }
   c.code.patch_jump(over);
+}
+
+/// (sleep seconds): nothing happens, except that other branches of a `par` may go on first.
+void form_sleep(FormCompiler& c, DatumId form, FormItems /*items*/) {
+  c.check_no_perform(form);
+  if (!c.interleave) return c.nil(form);
+  c.code.emit(PlanOp::kSleep, 0, 0, form);
+  c.code.adjust(1);
 }
 
 void form_if(FormCompiler& c, DatumId form, FormItems items) {
@@ -327,6 +338,7 @@ std::span<const FormEntry> control_forms() {
       {"eval-when", form_eval_when},
       {"par", form_par},
       {"pursue", form_pursue},
+      {"sleep", form_sleep},
       {"if", form_if},
       {"when", form_when},
       {"unless", form_unless},

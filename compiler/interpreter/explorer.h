@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -60,6 +61,7 @@ class Explorer {
   void set(const Job& job, PlanTarget target);
   void note_handlers(std::optional<LocationId> failed, std::size_t way = 0);
   void write_handlers();
+  void write_gaps();
   std::optional<PlanTarget> advance(Job& job);
   std::optional<PlanTarget> stopped(PlanState& state, const PlanStop& stop);
   bool has_room(const StateKey& key, DatumId form);
@@ -113,6 +115,7 @@ class Explorer {
   std::map<StateKey, BranchId> references_;
   std::map<StateKey, BranchId> turns_;
   std::map<std::string, TerminalId> terminals_;
+  std::set<DatumId> late_cleanups_;  // forms whose clean-ups may come behind everything else
   std::map<std::pair<std::uint32_t, std::string>, std::vector<ModelValueId>> registers_;
   std::map<std::uint32_t, PlanHandler> handlers_;  // by unit: what they take up
   bool failed_ = false;

@@ -132,11 +132,16 @@ std::vector<PlanMachine::ParEnd> ends_of(const PlanPar& par) {
   std::vector<ParEnd> out;
   // Clean-ups that are under way come to their end first.
   if (std::any_of(par.branches.begin(), par.branches.end(), in_cleanup)) return out;
-  if (par.value) out.push_back(ParEnd::kValue);
+  const bool cleans_up = std::any_of(par.branches.begin(), par.branches.end(), has_cleanup);
+  if (par.value) {
+    out.push_back(ParEnd::kValue);
+    if (cleans_up) out.push_back(ParEnd::kValueWithoutCleanups);
+  }
   if (!par.failure) return out;
   out.push_back(ParEnd::kFailure);
-  const bool cleans_up = std::any_of(par.branches.begin(), par.branches.end(), has_cleanup);
-  if (cleans_up) out.push_back(ParEnd::kFailureAfterCleanups);
+  if (!cleans_up) return out;
+  out.push_back(ParEnd::kFailureAfterCleanups);
+  out.push_back(ParEnd::kFailureWithoutCleanups);
   return out;
 }
 
@@ -160,6 +165,19 @@ void find_waiting(const PlanPar& par, PlanMachine::BranchPath& path,
     if (!branch.pars.empty()) find_waiting(branch.pars.front(), path, out);
     path.pop_back();
   }
+}
+
+}  // namespace
+
+namespace {
+
+/// Does the branch wait at a perform, not at a `sleep`?
+bool resume_performs(const PlanState& state, const PlanMachine::BranchPath& path) {
+  const auto* par = &state.pars.front();
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    par = &par->branches[path[i]].pars.front();
+  }
+  return !par->branches[path.back()].turn->sleeps;
 }
 
 }  // namespace
@@ -239,12 +257,18 @@ PlanMachine::Step PlanMachine::next_branch(PlanState& state) {
       state.stack.push_back(result);
       return {};
     }
-    if (state.pars.size() == 1) return StopTurn{};
+    if (state.pars.size() == 1) {
+      const auto open = PlanMachine::waiting(state);
+      const bool alone = open.size() == 1 && PlanMachine::endings(state).empty();
+      if (!alone || resume_performs(state, open.front())) return StopTurn{};
+      resume(state, open.front());  // nobody else has a turn
+      return {};
+    }
     put_aside(state, state.pars.size() - 2);
   }
 }
 
-std::optional<PlanStop> PlanMachine::wait(PlanState& state, const StopPerform& perform) {
+std::optional<PlanStop> PlanMachine::wait(PlanState& state, const PlanTurn& turn) {
   const auto decided = std::find_if(state.pars.begin(), state.pars.end(), [](const PlanPar& par) {
     return par.failure.has_value() || par.value.has_value();
   });
@@ -255,7 +279,7 @@ std::optional<PlanStop> PlanMachine::wait(PlanState& state, const StopPerform& p
     goes_on = std::any_of(state.frames.begin() + decided->frames, state.frames.end(), runs_cleanup);
   }
   auto& par = state.pars.back();
-  if (goes_on) par.branches[par.active].turn = PlanTurn{perform.designator, perform.form};
+  if (goes_on) par.branches[par.active].turn = turn;
   put_aside(state, state.pars.size() - 1);
   return next_branch(state);
 }
@@ -274,13 +298,12 @@ std::vector<PlanMachine::Ending> PlanMachine::endings(const PlanState& state) {
   return out;
 }
 
-StopPerform PlanMachine::resume(PlanState& state, const BranchPath& path) {
+std::optional<StopPerform> PlanMachine::resume(PlanState& state, const BranchPath& path) {
   for (const auto branch : path) put_in_place(state, branch);
   auto& par = state.pars.back();
-  auto& turn = par.branches[par.active].turn;
-  const StopPerform out{turn->designator, turn->form};
-  turn.reset();
-  return out;
+  const auto turn = *std::exchange(par.branches[par.active].turn, std::nullopt);
+  if (turn.sleeps) return std::nullopt;
+  return StopPerform{turn.designator, turn.form};
 }
 
 std::optional<PlanStop> PlanMachine::end_par(PlanState& state, const Ending& ending) {
@@ -290,17 +313,18 @@ std::optional<PlanStop> PlanMachine::end_par(PlanState& state, const Ending& end
 
 /// The innermost `par` ends. Of its branches only the clean-ups are left, those of the first branch
 /// on top. They run before a value goes on, before a failure does, or once a handler of it has
-/// decided or on the way out of the task.
+/// decided or on the way out of the task; or else behind everything that is left of the plan.
 PlanMachine::Step PlanMachine::evaporate(PlanState& state, ParEnd end) {
   const auto par = std::move(state.pars.back());
   state.pars.pop_back();
-  for (auto branch = par.branches.rbegin(); branch != par.branches.rend(); ++branch) {
+  const bool drops = end == ParEnd::kValueWithoutCleanups || end == ParEnd::kFailureWithoutCleanups;
+  for (auto branch = par.branches.rbegin(); branch != par.branches.rend() && !drops; ++branch) {
     keep_cleanups(state, par, *branch, {});
   }
   const auto frame = par.frames - 1;
-  if (end == ParEnd::kValue)
+  if (end == ParEnd::kValue || end == ParEnd::kValueWithoutCleanups)
     return unwind(state, {PendingKind::kExit, frame, *par.exit, *par.value});
-  if (end == ParEnd::kFailure) return search(state, *par.failure, par.guards);
+  if (end != ParEnd::kFailureAfterCleanups) return search(state, *par.failure, par.guards);
   return unwind(state, {PendingKind::kCross, frame, par.guards, *par.failure});
 }
 

@@ -60,6 +60,7 @@ enum class PlanOp : std::uint8_t {
   kExpectList,    // the top must be a list that is known (CPL021, CPL008)
   kPar,           // start the branches of table a, which take turns
   kEndBranch,     // a branch is over, with the top as its value
+  kSleep,         // push nil; a branch of a `par` waits here for its turn
   kTick,          // count variable a up; cut here beyond the loop limit
   kDone,          // the plan is over
 };
@@ -132,6 +133,12 @@ struct ParBranches {
   std::optional<std::uint32_t> exit;  // `pursue`: where the first value goes on
 };
 
+/// Executions that the code does not have.
+struct CodeGap {
+  std::string text;
+  DatumId source;
+};
+
 struct PlanGlobal {
   std::string name;
   DatumId source;
@@ -148,6 +155,7 @@ struct PlanCode {
   std::vector<FunctionTemplate> functions_made;
   std::vector<PlanGlobal> globals;
   std::vector<std::string> strings;
+  std::vector<CodeGap> gaps;
   FailureClasses classes;
   std::map<std::string, std::uint32_t, std::less<>> functions;     // the plan's own: their units
   std::map<std::string, std::string, std::less<>> function_names;  // by `package::name`: that name

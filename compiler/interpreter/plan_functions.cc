@@ -215,6 +215,7 @@ void PlanMachine::take_primary(PlanState& state, const PlanInstruction& instruct
     case PlanOp::kFail:
     case PlanOp::kPar:
     case PlanOp::kEndBranch:
+    case PlanOp::kSleep:
     case PlanOp::kTick:
     case PlanOp::kDone:
       return;

@@ -60,6 +60,8 @@ class KeyWriter {
     }
   }
 
+  void sleep(std::uint32_t slept, std::uint32_t asleep) { key.insert(key.end(), {slept, asleep}); }
+
   /// As deep as the text nests `par`.
   void pars(const std::vector<PlanPar>& pars) {
     number(pars.size());
@@ -132,6 +134,7 @@ std::vector<std::uint32_t> state_key(const PlanState& state, const ValueStore& v
   writer.part(state.frames, state.guards, state.stack);
   if (!state.pars.empty()) writer.pars(state.pars);
   writer.links(state.links);
+  if (counters && state.slept > 0) writer.sleep(state.slept, state.asleep);
   return std::move(writer.key);
 }
 
@@ -311,6 +314,10 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
     case PlanOp::kEndBranch:
       if (auto stop = check_life(state, instruction)) return stop;
       return end_branch(state);
+    case PlanOp::kSleep:
+      stack.push_back(values_.nil());
+      if (state.pars.empty()) return {};
+      return wait(state, {values_.nil(), instruction.source, true});
     case PlanOp::kTick:
       return tick(state, instruction);
     case PlanOp::kDone:

@@ -63,10 +63,11 @@ struct PlanGuard {
   std::uint32_t height = 0;  // of the stack when it began
 };
 
-/// A perform that a branch of a `par` waits at for its turn.
+/// A perform, or a `sleep`, that a branch of a `par` waits at for its turn.
 struct PlanTurn {
   ValueId designator;
   DatumId form;
+  bool sleeps = false;
 };
 
 struct PlanPar;
@@ -109,6 +110,10 @@ struct PlanState {
   DesignatorLinks links;
   std::uint32_t performs = 0;  // on the path so far; not part of the state's identity
   std::uint32_t missed = 0;    // references that failed since the last perform; the same
+  // How often branches woke up since the last perform, and 1 + the turn at which the last one did.
+  // Not part of the identity of what performs next, but of questions and turns before it.
+  std::uint32_t slept = 0;
+  std::uint32_t asleep = 0;
 };
 
 /// Calls visit(value) for every value that the state holds, also in branches that wait.
@@ -195,13 +200,20 @@ class PlanMachine {
   ValueId leaving_task(ValueId failure) const;
   /// Inside a `par`: the running branch waits at this perform, others run up to theirs. None: run
   /// goes on with another branch.
-  std::optional<PlanStop> wait(PlanState& state, const StopPerform& perform);
+  std::optional<PlanStop> wait(PlanState& state, const PlanTurn& turn);
   /// Where branches wait: the way to each through nested `par`s, in written order.
   using BranchPath = std::vector<std::size_t>;
   static std::vector<BranchPath> waiting(const PlanState& state);
   /// How a `par` that is decided may end now. The clean-ups of the branches that it ends run in
   /// tasks of their own, so a handler of its failure may decide before them or after.
-  enum class ParEnd : std::uint8_t { kValue, kFailure, kFailureAfterCleanups };
+  /// Without clean-ups: they come behind everything that is left of the plan.
+  enum class ParEnd : std::uint8_t {
+    kValue,
+    kValueWithoutCleanups,
+    kFailure,
+    kFailureAfterCleanups,
+    kFailureWithoutCleanups
+  };
   struct Ending {
     BranchPath path;  // to the `par`
     ParEnd end = ParEnd::kValue;
@@ -209,8 +221,8 @@ class PlanMachine {
   static std::vector<Ending> endings(const PlanState& state);
   /// Ends the `par` like that; run goes on after it.
   std::optional<PlanStop> end_par(PlanState& state, const Ending& ending);
-  /// Puts that branch in place; its perform is next.
-  static StopPerform resume(PlanState& state, const BranchPath& path);
+  /// Puts that branch in place; its perform is next. None: it wakes up, and run goes on.
+  static std::optional<StopPerform> resume(PlanState& state, const BranchPath& path);
   /// Lets a function of the plan answer, in a task of its own; run goes into it.
   std::optional<PlanStop> enter(PlanState& state, std::uint32_t unit,
                                 const std::vector<ValueId>& arguments, DatumId form);

@@ -127,7 +127,7 @@ std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform&
     result = found_object(value, stop.designator);
   }
   ++state.performs;
-  state.missed = 0;
+  state.missed = state.slept = state.asleep = 0;
   // The last job is taken first: success.
   if (graph_.locations[id].failures.empty()) {
     jobs_.push_back({state, failure, {}, Job::Edge::kFailure, id.index(), id});
@@ -272,7 +272,7 @@ std::optional<PlanTarget> Explorer::advance(Job& job) {
     } else if (job.state.pars.empty()) {
       return perform(job.state, *act);
     } else {
-      ended = machine_.wait(job.state, *act);
+      ended = machine_.wait(job.state, {act->designator, act->form});
     }
     if (ended) return stopped(job.state, *ended);
   }
@@ -312,6 +312,19 @@ void Explorer::write_handlers() {
   for (auto& [place, handler] : in_order) graph_.handlers.push_back(std::move(handler));
 }
 
+void Explorer::write_gaps() {
+  for (const auto& gap : code_.gaps) graph_.gaps.push_back({gap.text, data_.source(gap.source)});
+  for (const auto form : late_cleanups_) {
+    const auto text =
+        fmt::format("clean-ups of `{}` among what follows it", data_.head(form).value_or("par"));
+    graph_.gaps.push_back({text, data_.source(form)});
+  }
+  const auto by_place = [](const PlanGap& a, const PlanGap& b) {
+    return std::pair(a.source.file, a.source.begin) < std::pair(b.source.file, b.source.begin);
+  };
+  std::stable_sort(graph_.gaps.begin(), graph_.gaps.end(), by_place);
+}
+
 base::Result<PlanGraph> Explorer::explore() {
   if (!machine_.run_definitions()) return sink_.already_reported();
   jobs_.push_back({machine_.start(), {}, {}, Job::Edge::kEntry, 0});
@@ -329,6 +342,7 @@ base::Result<PlanGraph> Explorer::explore() {
   }
   if (failed_) return sink_.already_reported();
   write_handlers();
+  write_gaps();
   return std::move(graph_);
 }
 
@@ -368,62 +382,6 @@ BranchId Explorer::branch(FormulaTree guard, DatumId form) {
 BranchId Explorer::free_branch(std::string choice, DatumId form) {
   return graph_.branches.add(
       {{}, std::move(choice), data_.source(form), TerminalId(0), TerminalId(0), true});
-}
-
-namespace {
-
-constexpr auto kParEndWords = base::word_table<PlanMachine::ParEnd>(
-    "the `pursue` ends", "the branches fail", "the branches fail after the clean-ups");
-
-}  // namespace
-
-/// Any branch of a `par` that waits may go on, and a `par` that is decided may end.
-std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
-  const auto waiting = PlanMachine::waiting(state);
-  const auto endings = PlanMachine::endings(state);
-  const auto ways = waiting.size() + endings.size();
-  const auto go_on = [&](std::size_t way, Job::Edge edge, std::uint32_t owner) {
-    Job job{state, {}, {}, edge, owner};
-    if (way < waiting.size()) {
-      job.act = PlanMachine::resume(job.state, waiting[way]);
-    } else {
-      job.ending = endings[way - waiting.size()];
-    }
-    return job;
-  };
-  if (ways == 1) {
-    auto job = go_on(0, Job::Edge::kEntry, 0);
-    return advance(job);
-  }
-  auto key = state_key(state, values_, false);
-  const auto found = turns_.find(key);
-  if (found != turns_.end()) return found->second;
-  const auto form = state.pars.front().form;
-  if (!has_room(key, form)) return std::nullopt;
-  const auto choice = [&](std::size_t way) {
-    const bool goes_on = way < waiting.size();
-    return free_branch(goes_on ? (way == 0 ? "the first branch goes on" : "the next branch goes on")
-                               : std::string(kParEndWords.of(endings[way - waiting.size()].end)),
-                       form);
-  };
-  const auto first = choice(0);
-  turns_.emplace(std::move(key), first);
-  auto here = first;
-  // The last job is taken first: branches in written order.
-  std::vector<Job> jobs;
-  for (std::size_t way = 0; way + 1 < ways; ++way) {
-    jobs.push_back(go_on(way, Job::Edge::kTrue, here.index()));
-    if (way + 2 == ways) {
-      jobs.push_back(go_on(way + 1, Job::Edge::kFalse, here.index()));
-    } else {
-      const auto next = choice(way + 1);
-      graph_.branches[here].if_false = next;
-      here = next;
-    }
-  }
-  jobs_.insert(jobs_.end(), std::make_move_iterator(jobs.rbegin()),
-               std::make_move_iterator(jobs.rend()));
-  return first;
 }
 
 base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files,

@@ -31,6 +31,7 @@ std::int64_t change_of(const PlanCode& code, const PlanInstruction& instruction)
     case PlanOp::kFunction:
     case PlanOp::kFail:
     case PlanOp::kPar:
+    case PlanOp::kSleep:
       return 1;
     case PlanOp::kStoreGlobal:
     case PlanOp::kPop:
@@ -246,6 +247,7 @@ bool ValueFlow::step(const ValuePlace& place, std::vector<std::uint32_t>& return
     case PlanOp::kPopGuard:
     case PlanOp::kRunCleanup:
     case PlanOp::kTick:
+    case PlanOp::kSleep:
     case PlanOp::kFail:
     case PlanOp::kSpreadValues:
     case PlanOp::kListValues:

@@ -10,11 +10,21 @@ namespace parallax::compiler {
 namespace {
 
 constexpr std::string_view kIgnoredForms[] = {
-    "declare",           "in-package",      "ros-debug",
-    "ros-info",          "ros-warn",        "ros-error",
-    "ros-fatal",         "set-debug-level", "set-debug-levels",
-    "log-event",         "sleep",           "on-event",
-    "publish-event",     "clear-belief",    "visualize-marker",
+    "declare",
+    "in-package",
+    "ros-debug",
+    "ros-info",
+    "ros-warn",
+    "ros-error",
+    "ros-fatal",
+    "set-debug-level",
+    "set-debug-levels",
+    "log-event",
+    "warn",
+    "on-event",
+    "publish-event",
+    "clear-belief",
+    "visualize-marker",
     "visualize-gripper",
 };
 

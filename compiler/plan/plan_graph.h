@@ -122,6 +122,12 @@ struct PlanHandler {
   bool otherwise = false;  // also handles failures that the plan itself signals or hands on
 };
 
+/// Executions of the real plan that the graph leaves out: a claim about all of them has no proof.
+struct PlanGap {
+  std::string text;
+  base::SourceRange source;
+};
+
 struct PlanGraph {
   PlanTarget entry = TerminalId(0);  // an empty plan goes straight to a terminal
   base::Store<LocationId, PlanLocation> locations;
@@ -129,6 +135,7 @@ struct PlanGraph {
   base::Store<BranchId, PlanBranch> branches;
   base::Store<ModelValueId, ModelValue> values;
   std::vector<PlanHandler> handlers;  // in the order of the text
+  std::vector<PlanGap> gaps;          // in the order of the text
 };
 
 /// Where control goes when the perform fails the way of this number (0 if it has no ways).

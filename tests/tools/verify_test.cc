@@ -209,9 +209,20 @@ TEST_CASE("traces: branches of a plan run in written order, or in every order") 
                                         "--limit=0"};
   // The plan says nothing of Place: at every timepoint two instances happen or not, 4 ways. Go
   // comes first, and the region is reached; or PickUp fails before it, one timepoint more.
-  CHECK(json_of(cli, arguments)["traces"] == 4);
+  const auto ordered = json_of(cli, arguments);
+  CHECK(ordered["traces"] == 4);
+  CHECK(ordered["every_order"] == false);
+  // Nothing is known about the other order.
+  const auto claim = cli.parallax({"verify", "domain.e", "start.e", "--plan", "par.lisp", "--bind",
+                                   "named.bind", "--horizon", "3", "--property",
+                                   "HoldsAt(Holding(),time) | !HoldsAt(Holding(),time)"});
+  CHECK(claim.code == 0);
+  CHECK(claim.out.starts_with("holds up to horizon 3 (not of every order, no proof)"));
+  CHECK(claim.err.find("not explored: the other orders of `par` at par.lisp:1:1") !=
+        std::string::npos);
   arguments.push_back("--par=interleave");
   const auto both = json_of(cli, arguments);
+  CHECK(!both.contains("every_order"));
   CHECK(both["traces"] == 4 + 4 * 4);
   CHECK(both["exploration"] == "all traces explored");
 }

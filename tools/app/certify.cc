@@ -51,6 +51,10 @@ std::unique_ptr<runtime::SatSolver> TraceCertifier::solver() {
 
 void TraceCertifier::conclude(const std::string& exploration, bool searched) {
   if (!files_) return;
+  if (verdict_ == kByParts) {
+    if (option_.keep) decline("the plan has executions that were not explored");
+    return;
+  }
   if (!is_whole(exploration)) return decline("the list was stopped before its end");
   if (exploration == runtime::to_string(runtime::Exploration::kCompleteUpToBound)) {
     claim_->limit_to_horizon();
@@ -81,7 +85,16 @@ void TraceCertifier::conclude(const std::string& exploration, bool searched) {
 }
 
 void TraceCertifier::rest_on_symmetry() {
-  if (!files_) verdict_ = kBySymmetry;
+  if (!files_ && verdict_ != kByParts) verdict_ = kBySymmetry;
+}
+
+void TraceCertifier::note_gaps(const std::optional<compiler::PlanGraph>& plan) {
+  if (!plan || plan->gaps.empty()) return;
+  verdict_ = kByParts;
+  for (const auto& gap : plan->gaps) {
+    context_.remark(
+        fmt::format("not explored: {} at {}", gap.text, context_.files().place(gap.source)));
+  }
 }
 
 std::string TraceCertifier::remark(const std::string& exploration) const {
@@ -90,8 +103,10 @@ std::string TraceCertifier::remark(const std::string& exploration) const {
 
 std::string TraceCertifier::fields() const {
   const bool by_symmetry = verdict_ == kBySymmetry;
-  const auto short_form = by_symmetry || verdict_ == "no proof" ? "none" : verdict_.substr(6);
-  auto out = fmt::format("\"proof\":\"{}\",", short_form);
+  const bool by_parts = verdict_ == kByParts;
+  const bool none = by_symmetry || by_parts || verdict_ == "no proof";
+  auto out = fmt::format("\"proof\":\"{}\",", none ? "none" : verdict_.substr(6));
+  if (by_parts) out += "\"every_order\":false,";
   if (by_symmetry) out += "\"symmetry\":true,";
   if (verdict_ == "proof checked") out += fmt::format("\"proof_origin\":\"{}\",", origin_);
   if (verdict_ == "proof checked" && option_.keep) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "compiler/plan/plan_graph.h"
 #include "runtime/certify/certificate.h"
 #include "runtime/session/solver_session.h"
 #include "runtime/solver/sat_solver.h"
@@ -20,6 +21,9 @@ struct CertifyOption {
 
 /// The verdict on a claim that rests on an argument by symmetry.
 inline constexpr std::string_view kBySymmetry = "symmetry, not proof checked";
+
+/// The verdict on a claim about a plan of which some executions were not explored.
+inline constexpr std::string_view kByParts = "not of every order, no proof";
 
 /// The verdict on a claim that was searched by cubes.
 inline constexpr std::string_view kByCubes = "cubes, not proof checked";
@@ -56,8 +60,10 @@ class TraceCertifier {
   bool refuted() const { return verdict_ == "proof not accepted"; }
   /// Records that the claim has no proof: it rests on an argument by symmetry.
   void rest_on_symmetry();
-  /// `no proof`, `symmetry, not proof checked`, `proof checked`, `proof not accepted` or `proof not
-  /// checked`.
+  /// Records that the claim has no proof if the plan has gaps, and says which.
+  void note_gaps(const std::optional<compiler::PlanGraph>& plan);
+  /// `no proof`, `not of every order, no proof`, `symmetry, not proof checked`, `proof checked`,
+  /// `proof not accepted` or `proof not checked`.
   const std::string& verdict() const { return verdict_; }
   std::string proof_file() const { return files_ ? files_->proof_path().string() : ""; }
   /// ` (proof checked)` or another verdict for a list that claims to be complete, else nothing.

@@ -272,6 +272,7 @@ int list_compiled(const TracesOptions& options, const compiler::Compilation& com
   std::optional<TraceCertifier> certifier;
   certifier.emplace(options.certify, options.model.models, model, invocation);
   if (!certifier->ready()) return 0;
+  certifier->note_gaps(compilation.plan);
   // Where the list claims less, the optimum has a proof of its own.
   const auto prove_optimum = [&] {
     if (best == nullptr || !best->optimum().witness || !certifier->is_asked()) return;

@@ -229,7 +229,10 @@ std::string answer_json(const compiler::CompiledModel& model, const CheckedPrope
                                  {"words", rests_on_words(one)}});
     }
   }
-  if (answer.proof == kBySymmetry) {
+  if (answer.proof == kByParts) {
+    out["proof"] = "none";
+    out["every_order"] = false;
+  } else if (answer.proof == kBySymmetry) {
     out["proof"] = "none";
     out["symmetry"] = true;
   } else if (answer.proof == kByCubes) {
@@ -278,6 +281,7 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   const auto certify = proof_option(options, folder);
   TraceCertifier certifier(certify, options.model.models, model, invocation);
   if (!certifier.ready()) return 0;
+  certifier.note_gaps(compilation->plan);
   auto answer = ask(model, certifier, !options.certify.file.empty(), options.jobs);
   // Without executions nothing can go wrong in a model. One that goes on is known to have some.
   if (!answer.violation && answer.exploration == runtime::Exploration::kAllTracesExplored &&
@@ -285,7 +289,9 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
     return 0;
   }
   const bool holds = !answer.violation && answer.exploration != runtime::Exploration::kStopped;
-  if (holds && answer.by_symmetry) {
+  if (holds && certifier.verdict() == kByParts) {
+    answer.proof = kByParts;
+  } else if (holds && answer.by_symmetry) {
     answer.proof = kBySymmetry;
   } else if (holds && answer.by_cubes) {
     answer.proof = kByCubes;

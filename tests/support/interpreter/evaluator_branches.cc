@@ -16,7 +16,14 @@
 
 namespace parallax::test {
 
-enum class End { kValue, kFailure, kFailureAfterCleanups };
+/// Without clean-ups: they come behind everything that is left of the plan.
+enum class End {
+  kValue,
+  kValueWithoutCleanups,
+  kFailure,
+  kFailureAfterCleanups,
+  kFailureWithoutCleanups
+};
 
 /// A way to go on: the path of nested branches to a perform, or to an end of the form.
 struct Evaluator::Way {
@@ -117,9 +124,12 @@ struct Evaluator::Branches {
   std::vector<End> ends() const {
     std::vector<End> out;
     if (any(busy)) return out;
+    const bool cleaning = any(cleans_up);
     if (value) out.push_back(End::kValue);
+    if (value && cleaning) out.push_back(End::kValueWithoutCleanups);
     if (failure) out.push_back(End::kFailure);
-    if (failure && any(cleans_up)) out.push_back(End::kFailureAfterCleanups);
+    if (failure && cleaning) out.push_back(End::kFailureAfterCleanups);
+    if (failure && cleaning) out.push_back(End::kFailureWithoutCleanups);
     return out;
   }
 
@@ -138,7 +148,8 @@ struct Evaluator::Branches {
     }
   }
 
-  ~Branches() {
+  /// Ends all branches where they stand.
+  void abort() {
     for (const auto& branch : all) {
       if (!branch->over()) {
         branch->order = Branch::Order::kAbort;
@@ -146,7 +157,9 @@ struct Evaluator::Branches {
       }
       if (branch->thread.joinable()) branch->thread.join();
     }
+    all.clear();
   }
+  ~Branches() { abort(); }
 };
 
 Evaluator::Place Evaluator::place() const {
@@ -299,12 +312,19 @@ PlanItem Evaluator::turns_of(Branches& all) {
       note(all, next);
       continue;
     }
-    if (way.end == End::kFailure) {
+    const bool drops =
+        way.end == End::kValueWithoutCleanups || way.end == End::kFailureWithoutCleanups;
+    if (drops) {
+      const auto own = place();  // what the branches leave is not ours
+      all.abort();
+      restore(own);
+    }
+    if (way.end == End::kFailure || way.end == End::kFailureWithoutCleanups) {
       if (running_ != nullptr) running_->kept.push_back(&all);
       signal(*all.failure);  // the clean-ups of the branches follow what its handler decides
     }
     end_all(all);
-    if (way.end == End::kValue) return *all.value;
+    if (way.end == End::kValue || way.end == End::kValueWithoutCleanups) return *all.value;
     signal(*all.failure);
   }
 }
