@@ -33,6 +33,7 @@ struct Job {
   /// Goes on by asking the rules again: what carries out an action, or whether a goal holds.
   std::optional<std::variant<StopPerform, StopProof>> proof = {};
   std::vector<std::uint32_t> answers = {};  // the model's answers to the rules' questions so far
+  std::optional<StopPerform> begin = {};    // goes on by beginning it: its goal does not hold
 };
 
 /// Explores the states of a plan depth first, success before failure, and writes the graph.
@@ -93,6 +94,9 @@ class Explorer {
   BranchId branch(FormulaTree guard, DatumId form);
   BranchId free_branch(std::string choice, DatumId form);
   std::optional<PlanTarget> question(PlanState& state, const StopQuestion& stop);
+  /// Asks the model whether the goal of an action holds already; goes on if it has none that
+  /// counts.
+  Ruled ask_goal(PlanState& state, const StopPerform& perform);
   base::Result<FormulaTree> guard_of(const StopQuestion& stop);
   ValueId found_object(ModelValueId id, ValueId designator);
   ModelValueId free_register(const PlanState& state, DatumId form, const std::string& variable);

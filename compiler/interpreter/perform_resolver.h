@@ -62,6 +62,9 @@ class PerformResolver {
     return constants_.find(name);
   }
   const QueryBinding* find_query(std::string_view name, std::size_t arguments) const;
+  /// Formula of the goal, a list, that an action designator has; none, with W-GOAL, if the table
+  /// does not bind it. Another error was reported.
+  base::Result<std::optional<FormulaTree>> goal_formula(ValueId goal, base::SourceRange source);
   base::Result<FormulaTree> query_formula(const QueryBinding& query,
                                           std::span<const ValueId> arguments,
                                           base::SourceRange source);
@@ -115,6 +118,7 @@ class PerformResolver {
   const PlanGraph& graph_;
   ValueStore& values_;
   base::DiagnosticSink& sink_;
+  std::set<std::pair<std::uint32_t, std::string>> goals_told_;  // of W-GOAL: once at each place
 };
 
 }  // namespace parallax::compiler

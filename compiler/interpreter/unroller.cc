@@ -253,7 +253,9 @@ std::optional<PlanTarget> Explorer::advance(Job& job) {
       if (ruled.stop) return stopped(job.state, *ruled.stop);
       if (!ruled.goes_on) return ruled.target;
     }
-    auto stop = machine_.run(job.state);
+    const bool begins = job.begin.has_value();
+    auto stop =
+        begins ? PlanStop(*std::exchange(job.begin, std::nullopt)) : machine_.run(job.state);
     if (const auto* goal = std::get_if<StopProof>(&stop)) {
       job.proof = *goal;
       continue;
@@ -262,6 +264,10 @@ std::optional<PlanTarget> Explorer::advance(Job& job) {
     if (act == nullptr) return stopped(job.state, stop);
     act->designator = resolve_links(job.state.links, values_, act->designator);
     drop_dead_links(job.state, std::span(&act->designator, 1), values_);
+    if (!begins) {
+      const auto asked = ask_goal(job.state, *act);
+      if (!asked.goes_on) return asked.target;
+    }
     if (is_ruled(*act)) {
       job.proof = *act;
       continue;

@@ -17,7 +17,8 @@ bool starts_with_word(std::string_view text, std::string_view word) {
 
 bool starts_entry(std::string_view text) {
   return starts_with_word(text, "motion") || starts_with_word(text, "action") ||
-         starts_with_word(text, "query") || starts_with_word(text, "object");
+         starts_with_word(text, "query") || starts_with_word(text, "object") ||
+         starts_with_word(text, "goal");
 }
 
 /// `;` opens a comment, except where the table uses it to separate parts: behind other text and

@@ -16,8 +16,8 @@ struct BindingText {
   std::vector<std::size_t> entries;  // where entries start
 };
 
-/// An entry starts with `motion`, `action`, `query` or `object` at the start of a line or behind a
-/// separating `;`.
+/// An entry starts with `motion`, `action`, `query`, `goal` or `object` at the start of a line or
+/// behind a separating `;`.
 BindingText clean_binding(std::string_view file);
 
 /// Length of a parameter `?x` at the start of `text`; 0 if there is none.

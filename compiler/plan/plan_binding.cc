@@ -6,7 +6,9 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -38,7 +40,9 @@ class BindingParser {
   };
   void parse_failures();
   void parse_entry();
+  bool is_new(std::span<const QueryBinding> known, const QueryBinding& one, std::string_view kind);
   void parse_query(std::size_t begin);
+  void parse_goal(std::size_t begin);
   void parse_object(std::size_t begin);
   bool types_of(std::vector<std::string>& types);
   bool parse_alias(Alias alias);
@@ -72,7 +76,6 @@ bool same_keys(const BindingEntry& a, const BindingEntry& b) {
   return left == right;
 }
 
-/// The entry ends here.
 bool BindingParser::nothing_left() {
   at_.skip_blanks();
   return at_.at_end() || at_.expected("the next entry");
@@ -95,6 +98,19 @@ bool BindingParser::parse_plan_call(BindingEntry& entry) {
   return nothing_left();
 }
 
+/// False: a query or a goal of that name was bound before, and that is reported.
+bool BindingParser::is_new(std::span<const QueryBinding> known, const QueryBinding& one,
+                           std::string_view kind) {
+  for (const auto& other : known) {
+    if (other.name != one.name || other.variables.size() != one.variables.size()) continue;
+    failed_ = true;
+    sink_.error(codes::kDuplicateBinding, one.source, kind, one.name)
+        .note(other.source, "first bound here");
+    return false;
+  }
+  return true;
+}
+
 /// `query NAME (?a ?b) ok: FORMULA @t`
 void BindingParser::parse_query(std::size_t begin) {
   QueryBinding query;
@@ -108,17 +124,51 @@ void BindingParser::parse_query(std::size_t begin) {
       !check_variables(entry)) {
     return;
   }
-  for (const auto& other : out_.queries) {
-    const bool same = other.name == query.name && other.variables.size() == query.variables.size();
-    if (!same) continue;
-    failed_ = true;
-    sink_.error(codes::kDuplicateBinding, query.source, "query", query.name)
-        .note(other.source, "first bound here");
-    return;
-  }
+  if (!is_new(out_.queries, query, "query")) return;
   query.formula = std::move(entry.formula);
   query.formula_source = entry.formula_source;
   out_.queries.push_back(std::move(query));
+}
+
+/// `goal (NAME ?a ?b) -> FORMULA`
+void BindingParser::parse_goal(std::size_t begin) {
+  GoalBinding goal;
+  if (!at_.take("(")) {
+    at_.expected("a goal such as `(object-in-hand ?o)`");
+    return;
+  }
+  std::string package;  // goals are compared without it
+  if (!at_.symbol("the name of a goal", package, goal.name)) return;
+  BindingEntry entry;
+  while (!at_.take(")")) {
+    std::string one;
+    if (!at_.variable(one)) return;
+    goal.variables.push_back(one);
+    entry.keys.push_back({{}, {}, std::move(one)});
+  }
+  goal.source = entry.source = at_.range(begin, at_.position());
+  if (!at_.take("->")) {
+    at_.expected("`->` and the formula of the goal");
+    return;
+  }
+  at_.skip_blanks();
+  auto end = at_.position() + at_.rest().size();
+  while (end > at_.position() && base::is_space(at_.text()[end - 1])) --end;
+  if (end == at_.position()) {
+    at_.expected("a formula");
+    return;
+  }
+  goal.formula_source = entry.formula_source = at_.range(at_.position(), end);
+  auto formula = read_formula_tree(goal.formula_source, at_.text(), sink_);
+  if (!formula) {
+    failed_ = true;
+    return;
+  }
+  entry.formula = std::move(*formula);
+  if (!repeat_mapping(entry) || !check_variables(entry)) return;
+  if (!is_new(out_.goals, goal, "goal")) return;
+  goal.formula = std::move(entry.formula);
+  out_.goals.push_back(std::move(goal));
 }
 
 /// `object (:type ?y) ok: FORMULA @t returns ?o else CLASS`
@@ -306,6 +356,7 @@ void BindingParser::parse_entry() {
   const auto begin = at_.position();
   if (at_.take_word("query")) return parse_query(begin);
   if (at_.take_word("object")) return parse_object(begin);
+  if (at_.take_word("goal")) return parse_goal(begin);
   entry.kind = at_.take_word("motion") ? PerformKind::kMotion : PerformKind::kAction;
   if (entry.kind == PerformKind::kAction) at_.take_word("action");
   std::vector<std::string> types;
@@ -427,7 +478,7 @@ base::Result<PlanBinding> BindingParser::parse() {
   at_.enter(BindingCursor::kPreamble);
   parse_failures();
   if (!at_.at_end()) {
-    at_.expected("an entry that starts with `motion`, `action`, `query` or `object`");
+    at_.expected("an entry that starts with `motion`, `action`, `query`, `goal` or `object`");
   }
   for (std::size_t entry = 0; entry < at_.entries(); ++entry) {
     at_.enter(entry);
@@ -439,24 +490,6 @@ base::Result<PlanBinding> BindingParser::parse() {
 }
 
 }  // namespace
-
-std::string normalise_key(std::string_view key) {
-  if (key == "target" || key == "pose" || key == "location" || key == "goal") return "target";
-  if (key == "object" || key == "for") return "object";
-  if (key == "arm" || key == "gripper" || key.starts_with("left-") || key.starts_with("right-")) {
-    return "arm";
-  }
-  return std::string(key);
-}
-
-std::vector<std::string> PlanBinding::types(PerformKind kind) const {
-  std::vector<std::string> out;
-  for (const auto& entry : entries) {
-    if (entry.kind != kind) continue;
-    if (std::find(out.begin(), out.end(), entry.type) == out.end()) out.push_back(entry.type);
-  }
-  return out;
-}
 
 base::Result<PlanBinding> parse_plan_binding(const base::SourceFiles& files, base::FileId file,
                                              base::DiagnosticSink& sink) {

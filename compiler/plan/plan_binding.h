@@ -20,7 +20,7 @@ enum class PerformKind : std::uint8_t { kMotion, kAction };
 inline constexpr auto kPerformKindWords = base::word_table<PerformKind>("motion", "action");
 constexpr std::string_view to_string(PerformKind kind) { return kPerformKindWords.of(kind); }
 
-/// The role that a designator key names: target|pose|location|goal -> target, object|for ->
+/// The role that a designator key names: target|pose|location -> target, object|for ->
 /// object, arm|gripper|left-...|right-... -> arm; every other key is its own role. Without colon.
 std::string normalise_key(std::string_view key);
 
@@ -66,6 +66,9 @@ struct QueryBinding {
   base::SourceRange formula_source;
 };
 
+/// Meaning of a goal, `(goal (name argument...))` in an action designator, like a query's.
+using GoalBinding = QueryBinding;
+
 /// Which objects an object designator without a name can mean.
 struct ObjectBinding {
   std::vector<BindingKey> keys;
@@ -81,6 +84,7 @@ struct ObjectBinding {
 struct PlanBinding {
   std::vector<BindingEntry> entries;   // in source order, aliases expanded
   std::vector<QueryBinding> queries;   // in source order
+  std::vector<GoalBinding> goals;      // in source order
   std::vector<ObjectBinding> objects;  // the first that fits is taken
   FailureTable failures = FailureTable::kDevel;
   /// The types of one kind, each once, in source order; for messages.
@@ -102,6 +106,7 @@ struct PlanBinding {
 ///     action fetching (:object ?o :arm ?a) -> plan fetch(?o,?a)
 ///     object (:type ?y) ok: TypeOf(?o,?y) & Perceived(?o) @t  returns ?o
 ///     query object-in-hand (?o) ok: exists arm. Holding(arm,?o) @t
+///     goal (object-in-hand ?o) -> exists arm. Holding(arm,?o)
 ///
 /// In front of the entries `failures: devel` or `failures: 2020` chooses CRAM's failure classes.
 /// A key without a variable binds the usual one: :target ?p, :object ?o, another its first letter.

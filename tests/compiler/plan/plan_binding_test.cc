@@ -61,7 +61,7 @@ TEST_CASE("binding: the table of the documentation") {
 
 TEST_CASE("binding: comments and line layout do not matter") {
   const auto bound = read_table(
-      "; a comment with action and motion\nmotion going (:goal ?where)\n->\nGo(region(?where)) ; "
+      "; a comment with action and motion\nmotion going (:pose ?where)\n->\nGo(region(?where)) ; "
       "to there\n  ok:\n RobotAt(region(?where))@t+1");
   CHECK(errors(bound).empty());
   REQUIRE(bound.binding.has_value());
@@ -76,7 +76,8 @@ TEST_CASE("binding: mistakes are located, several per run") {
   };
   const Case cases[] = {
       {"walking (:target ?p)",
-       "E4001 1:1 expected an entry that starts with `motion`, `action`, `query` or `object`, "
+       "E4001 1:1 expected an entry that starts with `motion`, `action`, `query`, `goal` or "
+       "`object`, "
        "found `walking`\n"},
       {"query held (o) ok: F(?o) @t", "E4001 1:13 expected a variable such as `?o`, found `o)`\n"},
       {"query held (?o) ok: F(?o) @t+1",

@@ -300,9 +300,9 @@ TEST_CASE("forms: a designator in a variable, pose helpers and aliases") {
 (let* ((?p (pose->pose-stamped "map" 0.0 (make-pose (make-3d-vector 0.25 0 0)
                                                     (make-identity-rotation))))
        (?where (a location (pose ?p)))
-       (?move (an action (type navigating) (goal ?where))))
+       (?move (an action (type navigating) (target ?where))))
   (perform ?move)
-  (perform (an action (type turning-towards) (location (desig-prop-value ?move :goal))))
+  (perform (an action (type turning-towards) (location (desig-prop-value ?move :target))))
   (perform (a motion (type going) (pose (make-identity-pose)))))
 )");
   CHECK(plan.has("CPL030") == false);
