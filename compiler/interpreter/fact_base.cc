@@ -1,5 +1,9 @@
 #include "compiler/interpreter/fact_base.h"
 
+#include <algorithm>
+#include <map>
+#include <string>
+
 #include "compiler/base/codes/plans.h"
 
 namespace parallax::compiler {
@@ -147,8 +151,36 @@ bool is_fact_group(const LispData& data, DatumId form) {
   return data.head(form) == "def-fact-group";
 }
 
+namespace {
+
+using GroupOfPredicate = std::map<std::string, DatumId, std::less<>>;
+
+/// A predicate that another group defines must be listed by this one: in CRAM loading fails.
+void check_predicates(const LispData& data, DatumId group, GroupOfPredicate& groups,
+                      base::DiagnosticSink& sink) {
+  const auto items = data.children(group);
+  const auto listed = data.children(items[2]);
+  for (const auto clause : items.subspan(3)) {
+    const auto parts = data.children(clause);
+    if (parts.size() < 2 || !data.head(parts[1])) continue;
+    const auto& predicate = data.key(data.children(parts[1])[0]);
+    const auto [first, added] = groups.emplace(predicate, group);
+    const auto is_listed = [&](DatumId item) {
+      return data.is_symbol(item) && data.key(item) == predicate;
+    };
+    if (added || first->second == group) continue;
+    if (std::any_of(listed.begin(), listed.end(), is_listed)) continue;
+    sink.error(codes::kPlanRule, data.source(clause), predicate,
+               "another group defines the predicate, and this one does not list it")
+        .note(data.source(first->second), "the other group");
+  }
+}
+
+}  // namespace
+
 FactBase read_fact_groups(const LispText& text, ValueStore& values, base::DiagnosticSink& sink) {
   FactBase out;
+  GroupOfPredicate groups;
   for (const auto form : text.forms) {
     if (!is_fact_group(text.data, form)) continue;
     const auto items = text.data.children(form);
@@ -159,6 +191,7 @@ FactBase read_fact_groups(const LispText& text, ValueStore& values, base::Diagno
                  "expected a name, a list of predicates and clauses");
       continue;
     }
+    check_predicates(text.data, form, groups, sink);
     for (const auto clause : items.subspan(3)) {
       ClauseReader(text.data, values, sink).read(clause, out);
     }

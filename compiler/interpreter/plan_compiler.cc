@@ -14,6 +14,7 @@
 #include "compiler/base/suggest.h"
 #include "compiler/interpreter/function_calls.h"
 #include "compiler/interpreter/lisp_macros.h"
+#include "compiler/interpreter/plan_reach.h"
 #include "compiler/lisp/lisp_library.h"
 
 namespace parallax::compiler {
@@ -32,12 +33,20 @@ bool is_housekeeping(std::string_view head) {
          head == "proclaim" || head == "export" || head == "def-fact-group";
 }
 
+bool is_definition(std::string_view head) {
+  return defines_function(head) || defines_global(head) || head == "defmacro";
+}
+
 /// Collects the file's definitions, compiles them, then the forms to be run.
 class PlanCompiler {
  public:
   PlanCompiler(LispText& text, ValueStore& values, base::DiagnosticSink& sink, bool interleave,
                const PlanBinding& binding)
-      : text_(text), sink_(sink), c_(text, values, sink, interleave) {
+      : text_(text),
+        binding_(binding),
+        sink_(sink),
+        c_(text, values, sink, interleave),
+        reach_(text.data) {
     c_.code.code().classes = FailureClasses(binding.failures);
   }
 
@@ -48,8 +57,8 @@ class PlanCompiler {
     }
     for (const auto form : text_.forms) flatten(form);
     note_designator_use();
+    find_reached(entry);
     collect_definitions();
-    for (const auto form : forms_) c_.check_dots(form);
     add_library();
     expand_forms();
     if (!missing_ && bare_forms_.empty() && functions_.empty()) {
@@ -86,6 +95,40 @@ class PlanCompiler {
       code.identities = code.identities || is_one(kEquate, c_.data.name(datum));
       code.describes = code.describes || code.identities || is_one(kDescribe, c_.data.name(datum));
     }
+  }
+
+  /// What the run may come to: from the entry, or from the forms at top level, or else from the
+  /// last function.
+  void find_reached(const std::optional<std::string>& entry) {
+    std::set<std::string, std::less<>> macros;
+    std::vector<DatumId> others;
+    std::vector<std::string> names;
+    std::string last;
+    for (const auto form : forms_) {
+      const auto head = c_.data.head(form).value_or("");
+      const auto items = c_.data.children(form);
+      if (head == "def-fact-group") {
+        reach_.add_facts(form);
+      } else if (is_definition(head)) {
+        if (items.size() < 2 || !c_.data.is_symbol(items[1])) continue;
+        reach_.define(c_.data.key(items[1]), form);
+        if (head == "defmacro") macros.insert(c_.data.key(items[1]));
+        if (defines_function(head)) last = c_.data.key(items[1]);
+      } else if (!is_housekeeping(head) && head != "define-condition") {
+        others.push_back(form);
+      }
+    }
+    const auto expands = [&](DatumId form) {
+      return c_.data.head(form) && macros.contains(c_.data.key(c_.data.children(form)[0]));
+    };
+    const bool bare = !std::all_of(others.begin(), others.end(), expands);
+    if (entry) std::erase_if(others, [&](DatumId form) { return !expands(form); });
+    if (entry) names.push_back(entry_key(*entry));
+    if (!entry && !bare) names.push_back(last);
+    for (const auto& bound : binding_.entries) {
+      if (bound.plan) names.push_back(entry_key(*bound.plan));
+    }
+    reach_.find(others, names);
   }
 
   bool define_name(DatumId form, DatumId name) {
@@ -192,9 +235,15 @@ class PlanCompiler {
   }
 
   /// True for a definition, and for a form that has no part in the run.
-  bool define(DatumId form) {
+  bool define(DatumId form, bool always) {
     const auto head = c_.data.head(form).value_or("");
     const auto items = c_.data.children(form);
+    const bool named = items.size() > 1 && c_.data.is_symbol(items[1]);
+    if (is_definition(head) && named && !always && !reach_.contains(c_.data.key(items[1]))) {
+      define_name(form, items[1]);
+      return true;
+    }
+    c_.check_dots(form);
     if (defines_function(head)) {
       define_function(form, items);
     } else if (head == "defmacro") {
@@ -214,7 +263,7 @@ class PlanCompiler {
     }
     for (std::size_t i = 0; i < forms_.size(); ++i) {
       c_.position = i + 1;
-      if (!define(forms_[i])) others_.emplace_back(i + 1, forms_[i]);
+      if (!define(forms_[i], false)) others_.emplace_back(i + 1, forms_[i]);
     }
   }
 
@@ -224,7 +273,7 @@ class PlanCompiler {
     for (const auto form : add_lisp_library(c_.data)) {
       const auto items = c_.data.children(form);
       const auto& name = c_.data.key(items[1]);
-      if (defined_.contains(name)) continue;
+      if (defined_.contains(name) && reach_.contains(name)) continue;
       if (c_.data.head(form) == "defmacro") {
         add_macro(form, name, items);
       } else {
@@ -253,7 +302,7 @@ class PlanCompiler {
           open.insert(open.end(), inside.rbegin(), inside.rend());
         } else if (datum != form && head == "define-condition") {
           define_condition(datum, items);
-        } else if (datum == form || !define(datum)) {
+        } else if (datum == form || !define(datum, true)) {
           bare_forms_.emplace_back(position, datum);
         }
       }
@@ -330,8 +379,10 @@ class PlanCompiler {
 
   using Positioned = std::pair<std::size_t, DatumId>;  // a form and where it stands
   LispText& text_;
+  const PlanBinding& binding_;
   base::DiagnosticSink& sink_;
   FormCompiler c_;
+  PlanReach reach_;
   std::vector<DatumId> forms_;                           // at top level
   std::map<std::string, DatumId, std::less<>> defined_;  // where, by name
   std::vector<std::pair<std::size_t, std::string>> functions_;

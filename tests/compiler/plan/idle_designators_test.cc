@@ -94,7 +94,8 @@ TEST_CASE("idle designators: what is dropped is reported where it stands") {
       {"(defun main (n) (when (> n 0) (main (- n 1))) OPEN)(main 2)", {kOpen}},
       {"(defun f (n) (if (> n 0) (g (- n 1)) OPEN))(defun g (n) (f n))(g 2)(perform SIG)", {kOpen}},
       {"(defmacro step () `OPEN)(step)(perform SIG)", {kOpen}},
-      {"(defun unused () SIG (perform OPEN))(perform OPEN)", {kSig}},
+      // The run does not come to it.
+      {"(defun unused () SIG (perform OPEN))(perform OPEN)", {}},
   };
   for (const auto& one : plans) {
     CAPTURE(one.plan);

@@ -26,7 +26,7 @@ const Case kCases[] = {
     {"(perform (a motion (type a b)))", "CPL003", "malformed `type`: a property is (key value)"},
     {"(let ((abc 1)) (list abd))", "CPL004", "no variable `abd` here"},
     {"(do-retry n (retry))", "CPL004", "no variable `n` here"},
-    {"(defparameter *a* *b*)(defparameter *b* 1)(list 1)", "CPL004", "no variable `*b*` here"},
+    {"(defparameter *a* *b*)(defparameter *b* 1)(list *a*)", "CPL004", "no variable `*b*` here"},
     {"(defun f () 1)(defun x:f () 2)", "CPL005", "`f` is defined twice"},
     {"(define-condition plan-failure (plan-failure) ())(list 1)", "CPL005",
      "`plan-failure` is defined twice"},
