@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <iterator>
 #include <string_view>
 #include <vector>
 
@@ -41,12 +43,48 @@ void let(FormCompiler& c, DatumId form, FormItems items, bool sequential) {
 void form_let(FormCompiler& c, DatumId form, FormItems items) { let(c, form, items, false); }
 void form_let_star(FormCompiler& c, DatumId form, FormItems items) { let(c, form, items, true); }
 
+DatumId symbol_at(FormCompiler& c, std::string_view name, DatumId place) {
+  return c.data.add_named(DatumKind::kSymbol, name, "", c.data.source(place));
+}
+
+DatumId list_at(FormCompiler& c, std::vector<DatumId> items, DatumId place) {
+  return c.data.add_list(items, c.data.source(place));
+}
+
+/// Does the place name a part of a list in a variable, so that nothing happens where it is read?
+bool is_part(const FormCompiler& c, DatumId place) {
+  static constexpr std::string_view kListParts[] = {"car",    "cdr",    "first", "rest", "second",
+                                                    "third",  "fourth", "fifth", "cadr", "caddr",
+                                                    "cadddr", "nth",    "elt",   "getf"};
+  const auto head = c.data.head(place).value_or("");
+  if (std::find(std::begin(kListParts), std::end(kListParts), head) == std::end(kListParts))
+    return false;
+  const auto items = c.data.children(place);
+  const bool indexed = head == "nth" || head == "elt" || head == "getf";
+  if (items.size() != (indexed ? 3U : 2U)) return false;
+  const std::size_t whole = head == "nth" ? 2 : 1;
+  const auto list = items[whole];
+  if (!c.data.is_symbol(list) && !is_part(c, list)) return false;
+  return !indexed || !c.data.is_list(items[3 - whole]) || c.data.head(items[3 - whole]) == "quote";
+}
+
+/// A new list takes the place of the one in the variable: lists are values here. Others that share
+/// the old one do not see the change, which they would in Lisp.
+void set_part(FormCompiler& c, DatumId form, DatumId place, DatumId value) {
+  c.code.code().gaps.push_back({"changes of shared lists", form});
+  c.compile(list_at(c, {symbol_at(c, "%set-place", form), place, value}, form));
+}
+
 void form_setf(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() % 2 == 0) c.malformed(form, "expected pairs of a place and a value");
   if (items.size() < 3) return c.nil(form);
   for (std::size_t i = 1; i + 1 < items.size(); i += 2) {
     if (i > 1) {
       c.code.drop(form);
+    }
+    if (is_part(c, items[i])) {
+      set_part(c, form, items[i], items[i + 1]);
+      continue;
     }
     c.compile(items[i + 1]);
     const auto* target = assignable(c, form, items[i]);
@@ -57,6 +95,12 @@ void form_setf(FormCompiler& c, DatumId form, FormItems items) {
 void form_incf(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() < 2 || items.size() > 3) {
     return c.refuse(form, "expected a variable and perhaps a step");
+  }
+  if (is_part(c, items[1])) {
+    const auto one = c.data.add_number(Number(1), c.data.source(form));
+    const auto step = items.size() == 3 ? items[2] : one;
+    const auto sign = symbol_at(c, c.form_name(form) == "decf" ? "-" : "+", form);
+    return set_part(c, form, items[1], list_at(c, {sign, items[1], step}, form));
   }
   const auto* target = assignable(c, form, items[1]);
   if (target == nullptr) return c.nil(form);
@@ -84,6 +128,10 @@ void form_push(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() != 3) {
     return c.refuse(form, "expected a value and a variable");
   }
+  if (is_part(c, items[2])) {
+    const auto joins = symbol_at(c, c.form_name(form) == "push" ? "cons" : "adjoin", form);
+    return set_part(c, form, items[2], list_at(c, {joins, items[1], items[2]}, form));
+  }
   c.compile(items[1]);
   const auto* target = assignable(c, form, items[2]);
   if (target == nullptr) return;
@@ -96,6 +144,11 @@ void form_push(FormCompiler& c, DatumId form, FormItems items) {
 /// (pop variable) is the first element, which the variable loses.
 void form_pop(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() != 2) return c.refuse(form, "expected a variable");
+  if (is_part(c, items[1])) {
+    c.compile(list_at(c, {symbol_at(c, "car", form), items[1]}, form));
+    set_part(c, form, items[1], list_at(c, {symbol_at(c, "cdr", form), items[1]}, form));
+    return c.code.drop(form);
+  }
   const auto* target = assignable(c, form, items[1]);
   if (target == nullptr) return c.nil(form);
   const LexicalBinding place = *target;

@@ -1,6 +1,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -276,6 +278,49 @@ void form_return_from(FormCompiler& c, DatumId form, FormItems items) {
   return_from(c, form, block, items.size() > 2 ? std::optional(items[2]) : std::nullopt);
 }
 
+/// The name of a symbol or a number in a `tagbody`; none: a statement.
+std::optional<std::string> tag_of(const FormCompiler& c, DatumId item) {
+  const auto kind = c.data[item].kind;
+  const bool tag = (kind == DatumKind::kSymbol && !c.data.is_nil(item)) ||
+                   kind == DatumKind::kKeyword || kind == DatumKind::kNumber;
+  return tag ? std::optional(print_datum(c.data, item)) : std::nullopt;
+}
+
+/// (tagbody tag statement...): `(go tag)` leads to the tag; the value is nil.
+void form_tagbody(FormCompiler& c, DatumId form, FormItems items) {
+  const auto scope = c.code.scope().size();
+  std::map<std::string, std::uint32_t> exits;
+  for (const auto item : items.subspan(1)) {
+    const auto tag = tag_of(c, item);
+    if (!tag) continue;
+    const auto [entry, added] = exits.emplace(*tag, c.code.open_exit());
+    if (!added) c.malformed(form, "a tag stands there twice");
+    c.code.show(c.code.named(BindingKind::kTag, *tag, entry->second));
+  }
+  // A tag is reached with a value, as every exit is.
+  c.nil(form);
+  for (const auto item : items.subspan(1)) {
+    if (const auto tag = tag_of(c, item)) {
+      c.code.set_exit(exits.at(*tag));
+    } else {
+      c.compile(item);
+      c.code.drop(item);
+    }
+  }
+  c.code.drop(form);
+  c.nil(form);
+  c.code.cut_scope(scope);
+}
+
+void form_go(FormCompiler& c, DatumId form, FormItems items) {
+  c.nil(form);
+  const auto tag = items.size() == 2 ? tag_of(c, items[1]) : std::nullopt;
+  if (!tag) return c.malformed(form, "expected a tag");
+  const auto* target = c.code.lookup(BindingKind::kTag, *tag);
+  if (target != nullptr && !c.code.in_other_task(*target)) return c.code.leave_to(*target, form);
+  c.error(codes::kReturnOutsideBlock, form, c.form_name(form));
+}
+
 /// (print x) is x.
 void form_print(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() < 2) return c.refuse(form, "expected a value");
@@ -350,6 +395,8 @@ std::span<const FormEntry> control_forms() {
       {"block", form_block},
       {"return", form_return},
       {"return-from", form_return_from},
+      {"tagbody", form_tagbody},
+      {"go", form_go},
       {"holds", form_holds},
       {"prolog", form_holds},
       {"format", form_format},

@@ -275,7 +275,24 @@ void form_fail(FormCompiler& c, DatumId form, FormItems items) {
   c.code.fail(name.value_or("plan-failure"), form);
 }
 
-/// (make-condition 'class :slot value...): the failure, which `fail` raises; slots are ignored.
+/// (signal 'class ...): CRAM ends the task with a plan failure or an error that nobody handles, so
+/// it never returns there; of other conditions it would.
+void form_signal(FormCompiler& c, DatumId form, FormItems items) {
+  const bool quoted = items.size() > 1 && c.data.head(items[1]) == "quote";
+  const auto name = quoted ? c.failure_class(items[1]) : std::nullopt;
+  const auto& classes = c.code.code().classes;
+  if (items.size() < 2 || c.data.is_string(items[1])) {
+    c.unsupported(form, "a text is neither a plan failure nor an error");
+    return c.nil(form);
+  }
+  if (name && !classes.is_a(*name, "plan-failure") && !classes.is_a(*name, "error")) {
+    c.unsupported(form, "the class is neither a plan failure nor an error");
+    return c.nil(form);
+  }
+  form_fail(c, form, items);
+}
+
+/// (make-condition 'class :slot value...): the failure, which `fail` raises.
 void form_make_condition(FormCompiler& c, DatumId form, FormItems items) {
   c.check_no_perform(form);
   if (items.size() < 2 || c.data.head(items[1]) != "quote") {
@@ -286,19 +303,47 @@ void form_make_condition(FormCompiler& c, DatumId form, FormItems items) {
   c.code.constant(name ? c.values.failure(*name) : c.values.nil(), form);
 }
 
+/// (:no-error (variable...) form...): the values on top in the variables.
+void bind_values(FormCompiler& c, FormItems clause, DatumId form) {
+  const auto names = c.data.children(clause[1]);
+  const auto count = static_cast<std::uint32_t>(names.size());
+  const auto scope = c.code.scope().size();
+  const auto first = c.code.height() - 1;
+  c.code.emit(PlanOp::kUnpack, count, 0, form);
+  c.code.adjust(static_cast<int>(count) - 1);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (c.data.is_symbol(names[i])) {
+      bind_variable(c, names[i], first + i, form);
+    } else {
+      c.malformed(form, "a variable is a name");
+    }
+  }
+  c.compile_declared(clause.subspan(2));
+  close_variables(c, scope, count, form);
+}
+
 /// (handler-case form (class (e) form...)...): unwinds first, then takes the first clause that
 /// fits.
 void form_handler_case(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() < 2) return c.refuse(form, "expected a form and clauses");
   std::vector<HandlerClause> table;
   std::vector<std::pair<std::uint32_t, FormItems>> clauses;
+  FormItems no_error;
   for (const auto clause : items.subspan(2)) {
     const auto parts = c.data.children(clause);
+    const bool after = parts.size() >= 2 && c.data.is_keyword(parts[0]) && no_error.empty() &&
+                       c.data.name(parts[0]) == "no-error" &&
+                       (c.data.is_list(parts[1]) || c.data.is_nil(parts[1]));
+    if (after) {
+      no_error = parts;
+      continue;
+    }
     const bool shaped = parts.size() >= 2 &&
                         (c.data.is_list(parts[1]) || c.data.is_nil(parts[1])) &&
                         c.data.children(parts[1]).size() <= 1 && !c.data.is_keyword(parts[0]);
     if (!shaped) {
-      c.malformed(clause, "a clause is (class (variable) form...); there is no `:no-error`");
+      c.malformed(clause,
+                  "a clause is (class (variable) form...) or (:no-error (variable...) form...)");
       continue;
     }
     const auto exit = c.code.open_exit();
@@ -315,6 +360,7 @@ void form_handler_case(FormCompiler& c, DatumId form, FormItems items) {
   c.code.push_handlers(c.code.add_handlers(std::move(table)), form);
   c.compile(items[1]);
   c.code.pop_guard(form);
+  if (!no_error.empty()) bind_values(c, no_error, form);
   std::vector<std::size_t> to_end;
   for (const auto& [exit, parts] : clauses) {
     to_end.push_back(c.code.jump(PlanOp::kJump, form));
@@ -417,6 +463,7 @@ std::span<const FormEntry> failure_forms() {
       {"retry", form_retry},
       {"fail", form_fail},
       {"error", form_fail},
+      {"signal", form_signal},
       {"make-condition", form_make_condition},
       {"handler-case", form_handler_case},
       {"unwind-protect", form_unwind_protect},

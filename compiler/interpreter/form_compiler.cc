@@ -32,7 +32,6 @@ constexpr std::string_view kNoFluents =
 /// Reactive forms and how to write it instead.
 constexpr Hint kReactive[] = {
     {"try-all", "use `try-in-order`, which tries one branch after the other"},
-    {"par-loop", "write the branches out in a `par`, or use `dolist` for one after the other"},
     {"partial-order", "write the steps in one of the orders, in a `seq`"},
     {"whenever", "ask `(holds '(fluent argument...))` after the performs that can change it"},
     {"wait-for", "ask `(holds '(fluent argument...))`; nothing changes but by performs"},
@@ -54,10 +53,6 @@ constexpr Hint kRejected[] = {
     {"defclass", "there are no classes"},
     {"defmethod", "there are no generic functions; write a function"},
     {"defgeneric", "there are no generic functions; write a function"},
-    {"tagbody", "use a loop"},
-    {"go", "use a loop"},
-    {"do", "use `loop` or `dotimes`"},
-    {"do*", "use `loop` or `dotimes`"},
     {"catch", "use `block`"},
     {"throw", "use `return-from`"},
     {"unquote", "a comma needs a backquote around it"},

@@ -15,7 +15,7 @@
 namespace parallax::compiler {
 
 /// kSpecial: a global that is rebound, its number is the index. kTask: no name; what is around it
-/// belongs to another task. kMacro: of a `macrolet`.
+/// belongs to another task. kMacro: of a `macrolet`. kTag: of a `tagbody`.
 enum class BindingKind : std::uint8_t {
   kVariable,
   kCounter,
@@ -24,7 +24,8 @@ enum class BindingKind : std::uint8_t {
   kRetry,
   kSpecial,
   kTask,
-  kMacro
+  kMacro,
+  kTag
 };
 
 /// A name that is visible here. Frames are counted from the outermost unit being written.

@@ -105,6 +105,13 @@ void compile_function_value(FormCompiler& c, DatumId form, DatumId function) {
   }
   if (!c.data.is_symbol(function)) return c.refuse(form, "expected a name or a lambda");
   const auto callee = find_callee(c, function);
+  if (!callee && c.data.is_symbol(function, "retry")) {
+    const auto unit = c.code.declare_unit("retry", form, 0);
+    c.code.enter_function_value(unit);
+    c.compile(c.data.add_list(std::span(&function, 1), c.data.source(form)));
+    c.code.leave_unit(PlanOp::kReturn, form);
+    return c.code.function_value(unit, form);
+  }
   if (!callee) {
     if (plan_forms().contains(c.data.name(function))) {
       c.unsupported(form, "it is no function here; write a lambda that calls it");

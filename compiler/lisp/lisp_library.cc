@@ -1,6 +1,9 @@
 #include "compiler/lisp/lisp_library.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -153,6 +156,95 @@ constexpr std::string_view kText = R"LISP(
         (lambda (&rest arguments) (funcall function (apply rest arguments))))
       (lambda (&rest arguments) (apply function arguments))))
 
+(defun search (wanted in)
+  (let ((length (length wanted)))
+    (dotimes (at (- (1+ (length in)) length) nil)
+      (when (equal (subseq in at (+ at length)) wanted) (return at)))))
+
+(defmacro psetf (&rest pairs)
+  (let ((bindings nil) (stores nil))
+    (loop while pairs
+          do (let ((place (pop pairs)) (new (gensym "NEW")))
+               (push `(,new ,(pop pairs)) bindings)
+               (push `(setf ,place ,new) stores)))
+    `(let ,(reverse bindings) ,@(reverse stores) nil)))
+(defmacro psetq (&rest pairs) `(psetf ,@pairs))
+(defmacro rotatef (&rest places)
+  `(psetf ,@(mapcan #'list places (append (rest places) (list (first places))))))
+(defmacro shiftf (&rest places)
+  (let ((old (gensym "OLD")))
+    `(let ((,old ,(first places)))
+       (psetf ,@(mapcan #'list (butlast places) (rest places)))
+       ,old)))
+(defun %let-bindings (bindings)
+  (if (or (null bindings) (consp (first bindings))) bindings (list bindings)))
+(defmacro if-let (bindings then &optional else)
+  (let ((bindings (%let-bindings bindings)))
+    `(let ,bindings (if (and ,@(mapcar #'first bindings)) ,then ,else))))
+(defmacro when-let (bindings &body body) `(if-let ,bindings (progn ,@body)))
+(defmacro when-let* (bindings &body body)
+  (let ((bindings (%let-bindings bindings)))
+    (if bindings
+        `(let (,(first bindings))
+           (when ,(first (first bindings)) (when-let* ,(rest bindings) ,@body)))
+        `(progn ,@body))))
+
+(defun %do-bindings (variables)
+  (mapcar (lambda (variable)
+            (if (consp variable) (list (first variable) (second variable)) (list variable nil)))
+          variables))
+(defun %do-steps (variables)
+  (mapcan (lambda (variable)
+            (if (and (consp variable) (rest (rest variable)))
+                (list (first variable) (third variable))
+                nil))
+          variables))
+(defmacro do (variables end &body body)
+  `(let ,(%do-bindings variables)
+     (loop (when ,(first end) (return (progn ,@(rest end))))
+           (tagbody ,@body)
+           (psetf ,@(%do-steps variables)))))
+(defmacro do* (variables end &body body)
+  `(let* ,(%do-bindings variables)
+     (loop (when ,(first end) (return (progn ,@(rest end))))
+           (tagbody ,@body)
+           (setf ,@(%do-steps variables)))))
+(defmacro prog (variables &body body) `(block nil (let ,variables (tagbody ,@body))))
+(defmacro prog* (variables &body body) `(block nil (let* ,variables (tagbody ,@body))))
+
+(defun %with-nth (value at list)
+  (if (= at 0)
+      (cons value (cdr list))
+      (cons (car list) (%with-nth value (1- at) (cdr list)))))
+(defun %with-getf (value key list)
+  (cond ((null list) (list key value))
+        ((eq (car list) key) (list* key value (cddr list)))
+        (t (list* (car list) (cadr list) (%with-getf value key (cddr list))))))
+(defun %container (place) (if (eq (first place) 'nth) (third place) (second place)))
+(defun %rebuilt (place value)
+  (let ((list (%container place)))
+    (case (first place)
+      ((car first) `(cons ,value (cdr ,list)))
+      ((cdr rest) `(cons (car ,list) ,value))
+      ((cadr second) `(%with-nth ,value 1 ,list))
+      ((caddr third) `(%with-nth ,value 2 ,list))
+      ((cadddr fourth) `(%with-nth ,value 3 ,list))
+      (fifth `(%with-nth ,value 4 ,list))
+      (nth `(%with-nth ,value ,(second place) ,list))
+      (elt `(%with-nth ,value ,(third place) ,list))
+      (getf `(%with-getf ,value ,(third place) ,list)))))
+(defun %stored (place value)
+  (if (consp place) (%stored (%container place) (%rebuilt place value)) `(setf ,place ,value)))
+(defmacro %set-place (place value)
+  (let ((new (gensym "NEW"))) `(let ((,new ,value)) ,(%stored place new) ,new)))
+
+(defmacro par-loop (head &body body)
+  (let ((branch (gensym "BRANCH")) (left (gensym "LEFT")))
+    `(labels ((,branch (,left)
+                (par (let ((,(first head) (car ,left))) (seq ,@body))
+                     (when (cdr ,left) (,branch (cdr ,left))))))
+       (,branch ,(second head)))))
+
 (defmacro with-gensyms (names &body body)
   `(let ,(mapcar (lambda (name)
                    (if (consp name)
@@ -195,6 +287,22 @@ bool wanted(const LispData& library, const std::vector<DatumId>& forms, const Li
   });
 }
 
+/// Does the plan set anything but variables? Our own macro expands that.
+bool sets_parts(const LispData& plan) {
+  static constexpr std::string_view kForms[] = {"setf", "incf", "decf", "push", "pushnew", "pop"};
+  for (std::uint32_t i = 0; i < plan.end_id().index(); ++i) {
+    const auto head = plan.head(DatumId(i)).value_or("");
+    if (std::find(std::begin(kForms), std::end(kForms), head) == std::end(kForms)) continue;
+    const auto items = plan.children(DatumId(i));
+    const std::size_t step = head == "setf" ? 2 : items.size();
+    for (std::size_t place = head.starts_with("push") ? 2 : 1; place < items.size();
+         place += step) {
+      if (plan.is_list(items[place])) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<DatumId> add_lisp_library(LispData& data) {
@@ -203,7 +311,8 @@ std::vector<DatumId> add_lisp_library(LispData& data) {
   const auto file = files.add("library", std::string(kText));
   const auto library = read_lisp(files, file, sink);
   PARALLAX_REQUIRE(library, "our own Lisp can be read");
-  if (data.size() == 0 || !wanted(library->data, library->forms, data)) return {};
+  if (data.size() == 0) return {};
+  if (!sets_parts(data) && !wanted(library->data, library->forms, data)) return {};
   const auto place = data.source(DatumId(0));
   const auto begin = data.end_id();
   std::vector<DatumId> out;
