@@ -78,7 +78,7 @@ TEST_CASE("what is told of a run is the same when its files have changed, or are
   const auto explained = cli.parallax({"explain", "r", "--runs", "5"});
   CHECK_MESSAGE(explained.code == 1, explained.err);
   CHECK(cli.parallax({"draw", "r", "-o", "r.svg"}).code == 0);
-  // What edits files does not edit those of then.
+  // Commands that edit files do not edit the kept texts.
   const auto repair = cli.parallax({"repair", "r", "--apply", "1"});
   CHECK(repair.code == 3);
   CHECK(cli.read("wrong_domain.e") == "no model\n");

@@ -21,7 +21,7 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// What is true of a revision.
+/// The facts of a revision.
 enum class Kind : std::uint8_t {
   kRefactoring,
   kFormatting,

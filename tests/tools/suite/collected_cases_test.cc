@@ -82,7 +82,7 @@ TEST_CASE("other selections, other paths and the list of quarantine count no cas
   REQUIRE(cli.suite({"--update-goldens"}).code == 0);
   take_out(cli);
   CHECK(cli.suite({"--only", "both", "--out", "elsewhere"}).code == 0);
-  // What is not selected is not looked at, wherever it was selected before.
+  // Cases that are not selected are not looked at, even if they were selected before.
   CHECK(json_of(cli, {"suite", "s", "--only", "both", "--collect-only"})["removed"].empty());
   CHECK(cli.parallax({"suite", "s/suite.yaml", "--collect-only"}).err.find("gone") ==
         std::string::npos);

@@ -95,7 +95,7 @@ class Repository : public GitFixture {
   ProcessResult play(const Example& example) const { return parallax(example.words); }
 };
 
-/// What the page shows is printed, but for hashes and what it leaves out.
+/// Everything that the page shows is printed, but for hashes and what it leaves out.
 void check_bisect(const GitFixture& cli, const Example& bisect) {
   const auto found = cli.parallax(bisect.words);
   CHECK_MESSAGE(found.code == 1, found.err);
