@@ -213,7 +213,7 @@ base::Result<std::vector<compiler::Fact>> result_facts(const std::string& path, 
 }
 
 /// Adds what differs between the texts that two runs kept.
-void add_kept(const DiffOptions& options, Comparison& out, Invocation& invocation) {
+void add_kept(const DiffOptions& options, ComparedRevisions& out, Invocation& invocation) {
   const auto kept = compare_kept(options.old_path, options.new_path, invocation);
   if (!kept) {
     out.fields += ",\"inputs\":null";
