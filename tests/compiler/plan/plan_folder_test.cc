@@ -105,12 +105,12 @@ TEST_CASE("plan folder: the system definition orders the files") {
 }
 
 TEST_CASE("plan folder: a system definition is data; code and mistakes in it are refused") {
-  struct Case {
+  struct Mistake {
     const char* text;
     std::string error;
   };
   const std::string read = "CPL061: cannot read the system definition: ";
-  const Case cases[] = {
+  const Mistake cases[] = {
       {"(load \"x\")(defsystem p :components ((:file \"a\")))",
        read + "it is read as data, and this is code"},
       {"(defsystem p :perform (test-op (o c) (run)) :components ((:file \"a\")))",

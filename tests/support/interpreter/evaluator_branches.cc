@@ -315,9 +315,9 @@ PlanItem Evaluator::turns_of(Branches& all) {
     const bool drops =
         way.end == End::kValueWithoutCleanups || way.end == End::kFailureWithoutCleanups;
     if (drops) {
-      const auto own = place();  // what the branches leave is not ours
+      const auto inside = place();  // what the branches leave is not ours
       all.abort();
-      restore(own);
+      restore(inside);
     }
     if (way.end == End::kFailure || way.end == End::kFailureWithoutCleanups) {
       if (running_ != nullptr) running_->kept.push_back(&all);
