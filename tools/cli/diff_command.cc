@@ -349,7 +349,7 @@ bool names_revisions(const DiffOptions& options) {
   return !options.tree.empty() || no_files;
 }
 
-int run(const DiffOptions& given, Invocation& invocation) {
+int run_diff(const DiffOptions& given, Invocation& invocation) {
   if (!is_usable(given, invocation)) return 0;
   if (!given.textconv.empty()) return convert(given, invocation);
   auto options = given;
@@ -464,7 +464,7 @@ Command diff_command() {
   command.flag("--exit-code", options->exit_code,
                "Accepted for those who know it from git; the exit code always tells");
   add_model_diff_options(command, *options);
-  return command_of(std::move(command), options, run);
+  return command_of(std::move(command), options, run_diff);
 }
 
 }  // namespace parallax::tools

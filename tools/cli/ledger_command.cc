@@ -402,7 +402,7 @@ int set_status(const LedgerOptions& options, Invocation& invocation) {
   return 0;
 }
 
-int run(const LedgerOptions& options, Invocation& invocation) {
+int run_ledger(const LedgerOptions& options, Invocation& invocation) {
   if (options.action == "add") return add(options, invocation);
   if (options.action == "check") return check(options, invocation);
   if (options.action == "status") return set_status(options, invocation);
@@ -439,7 +439,7 @@ Command ledger_command() {
   command.option("--revision", options->revision,
                  "add: where it was first seen; else what git says of the ledger's folder");
   add_recorded_scenario_option(command, options->scenario);
-  return command_of(std::move(command), options, run);
+  return command_of(std::move(command), options, run_ledger);
 }
 
 }  // namespace parallax::tools
