@@ -93,6 +93,8 @@ PageData page_named(const std::string& name, std::int64_t samples) {
       {name,
        name,
        1,
+       2,
+       name,
        true,
        {{name, "", {{name, name, name, {name}, 0.5, 0.5, 0.0, map, {}}}}, {name, name, {}}}}};
   return page;
