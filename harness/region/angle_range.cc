@@ -22,4 +22,9 @@ std::optional<std::string> angle_fault(const Interval& angles_rad) {
       most * std::numbers::pi / 180.0);
 }
 
+double unwrapped(double angle, const Interval& interval) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  return angle + kTurn * std::round((interval.midpoint() - angle) / kTurn);
+}
+
 }  // namespace parallax::harness

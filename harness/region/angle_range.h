@@ -11,4 +11,7 @@ namespace parallax::harness {
 /// It is wider than a turn, or lies more than a turn away from 0: such numbers are degrees.
 std::optional<std::string> angle_fault(const Interval& angles_rad);
 
+/// The representation of an angle that lies nearest to the middle of `interval` [rad].
+double unwrapped(double angle, const Interval& interval);
+
 }  // namespace parallax::harness

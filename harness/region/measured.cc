@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "harness/region/angle_range.h"
 #include "harness/region/area.h"
 
 namespace parallax::harness {
@@ -97,13 +98,19 @@ std::string measured(const InsideBinding& kind, const GroundFluent& fluent, cons
   const auto body = with_arguments(kind.body, fluent);
   const auto in_frame =
       region->frame.empty() ? std::string() : fmt::format(" in the frame of {}", region->frame);
+  // As a region reads it: an angle a turn away from the bounds is the same angle.
+  const auto value_on = [&](RegionAxis axis) {
+    const double value = (*point)[static_cast<std::size_t>(axis)];
+    const auto& bounds = region->on(axis);
+    return axis == RegionAxis::kYaw && bounds ? unwrapped(value, *bounds) : value;
+  };
   // The axis that is farthest outside, or nearest to a border from inside, in widths.
   const RegionAxis* decides = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const RegionAxis& axis : kRegionAxes) {
     const auto& bounds = region->on(axis);
     if (!bounds) continue;
-    const double value = (*point)[static_cast<std::size_t>(axis)];
+    const double value = value_on(axis);
     const double margin = std::min(value - bounds->lower, bounds->upper - value) / bounds->width();
     if (margin < least) decides = &axis, least = margin;
   }
@@ -116,7 +123,7 @@ std::string measured(const InsideBinding& kind, const GroundFluent& fluent, cons
   }
   if (decides == nullptr) return {};
   const bool is_in_rad = *decides == RegionAxis::kYaw;
-  const double value = (*point)[static_cast<std::size_t>(*decides)];
+  const double value = value_on(*decides);
   const auto place = place_in(*region->on(*decides), value, is_in_rad);
   return fmt::format("{}.{} = {} {}{}{} {}", body, to_string(*decides), number_text(value),
                      is_in_rad ? "rad" : "m", in_frame, place.starts_with("within") ? "" : ",",

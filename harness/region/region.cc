@@ -11,12 +11,6 @@
 namespace parallax::harness {
 namespace {
 
-/// The representation of an angle that lies nearest to the middle of `interval`.
-double unwrapped(double angle, const Interval& interval) {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
-  return angle + kTurn * std::round((interval.midpoint() - angle) / kTurn);
-}
-
 /// On which axes a region's closure has the point below its upper bound.
 struct Membership {
   std::array<bool, kRegionAxes.size()> below_upper{};

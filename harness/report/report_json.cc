@@ -56,8 +56,8 @@ OrderedJson json_of(const std::vector<DivergingFluent>& fluents) {
     out.push_back({{"fluent", fluent.fluent},
                    {"timepoint", fluent.timepoint},
                    {"predicted", fluent.predicted},
-                   {"observed", fluent.observed},
-                   {"measured", fluent.measured}});
+                   {"observed", fluent.observed}});
+    if (!fluent.measured.empty()) out.back()["measured"] = fluent.measured;
   }
   return out;
 }

@@ -99,9 +99,9 @@ TEST_CASE("traces of a plan: what is found is right, the rest is called stopped"
     Exploration end;
   };
   const std::string endless = R"(
-(defun go (?x) (perform (a motion (type going) (pose (make-pose-stamped "map" 0.0
+(defun drive (?x) (perform (a motion (type going) (pose (make-pose-stamped "map" 0.0
   (make-3d-vector ?x 0 0) (make-identity-rotation))))))
-(let ((?n 0)) (loop do (incf ?n) (go 1.5) (go 0.5)))
+(let ((?n 0)) (loop do (incf ?n) (drive 1.5) (drive 0.5)))
 )";
   for (const auto& [plan, constraint, horizon, end] :
        {Case{kPlan, "HoldsAt(At(b2),time)", 5, Exploration::kAllTracesExplored},

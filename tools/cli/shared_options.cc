@@ -214,6 +214,15 @@ base::Result<harness::SimulatorFactory> permitted_simulator(
   }
   if (spec.command.empty()) return make;
   const auto text = base::command_text(spec.command);
+  if (loaded.kept != nullptr) {
+    // The folder may be a stranger's: what it brings is read, and nothing that it names is started.
+    return invocation.sink().error(
+        codes::kReplayImpossible, spec.source,
+        fmt::format("`{}` stands in a text that the run kept, and a command is started only as the "
+                    "scenario "
+                    "itself has it; restore its files, or name it with --scenario",
+                    text));
+  }
   if (!permitted) {
     return invocation.sink().error(codes::kCommandNotPermitted, spec.source, text);
   }

@@ -194,12 +194,36 @@ class ModelComparison {
       if (!has_name(out_.old_side, one.before)) return refuse(out_.old_side, one.before);
       if (!has_name(out_.new_side, one.after)) return refuse(out_.new_side, one.after);
     }
+    if (!are_one_to_one()) return false;
     out_.renamings = with_variables(options_.renamings, out_.old_side, out_.new_side);
     rename(out_.old_side, out_.renamings);
     if (!options_.find_renamings || !options_.facts) return true;
     const auto found = find_renamings(out_.old_side, out_.new_side);
     rename(out_.old_side, found);
     out_.renamings.insert(out_.renamings.end(), found.begin(), found.end());
+    return true;
+  }
+
+  /// Two names that became one would be told as no difference.
+  bool are_one_to_one() {
+    std::set<std::string> before, after;
+    for (const auto& one : options_.renamings) {
+      const bool is_new = before.insert(one.before).second && after.insert(one.after).second;
+      if (is_new) continue;
+      context_.sink().error_about(
+          codes::kUsage, out_.old_side.name,
+          fmt::format("--rename: `{}={}` names one that another rule names, too",
+                      base::printable(one.before), base::printable(one.after)));
+      return false;
+    }
+    for (const auto& name : after) {
+      if (before.contains(name) || !has_name(out_.old_side, name)) continue;
+      context_.sink().error_about(
+          codes::kUsage, out_.old_side.name,
+          fmt::format("--rename: `{}` occurs here, too, and would be two names in one",
+                      base::printable(name)));
+      return false;
+    }
     return true;
   }
 

@@ -311,7 +311,7 @@ class Bisection {
     if (before->models.size() != after->models.size()) out_.difference += "models of the case\n";
     if (out_.difference.empty()) {
       out_.difference =
-          fmt::format("its models are the same; what {} says of it is not\n", scenario_);
+          "its models are the same; its expectation, golden file and limits were not compared\n";
     }
   }
 

@@ -61,6 +61,24 @@ TEST_CASE("a region: the axis that decides, with its bounds") {
   CHECK(measured("At(cup,right)", cup(1.0, 0.5)) == "cup.x = 1 m within [1, 2]");
 }
 
+TEST_CASE("a region: an angle a turn away is the same angle") {
+  base::DiagnosticSink sink;
+  auto ahead = rectangle("ahead", {0, 1}, {0, 1});
+  ahead.on(RegionAxis::kYaw) = Interval{-0.2, 0.2};
+  const StateMapping mapping(
+      *RegionSet::make({ahead}, true, sink),
+      {{"At", 1, InsideBinding{"robot", 0, {}, {}}, {base::FileId(0), 1, 2}}});
+  const auto fluent = ground_fluent("At(ahead)");
+  const auto text = [&](double x, double yaw) {
+    const State state = {{"robot.x", x}, {"robot.y", 0.5}, {"robot.yaw", yaw}};
+    CHECK(mapping.holds(fluent, state) == (x < 1.0 && yaw > 6.0 && yaw < 6.4));
+    return measured_text(mapping, fluent, state);
+  };
+  CHECK(text(0.5, 6.3) == "robot.yaw = 0.01681 rad within [-0.2, 0.2]");
+  CHECK(text(1.5, 6.3) == "robot.x = 1.5 m, 500 mm above [0, 1]");
+  CHECK(text(0.5, 6.7) == "robot.yaw = 0.4168 rad, 0.22 rad above [-0.2, 0.2]");
+}
+
 TEST_CASE("a region: flags and leaning come before the place") {
   auto state = cup(0.5, 0.5);
   state["cup.held"] = true;

@@ -102,9 +102,9 @@ TEST_CASE("what was not followed is named: the step at the horizon, the loop tha
 
   // Driving to and fro for ever, with a variable that makes every round a new state.
   const std::string endless = R"(
-(defun go () (perform (a motion (type going) (pose (make-pose-stamped "map" 0.0
+(defun drive () (perform (a motion (type going) (pose (make-pose-stamped "map" 0.0
   (make-3d-vector 0.5 0 0) (make-identity-rotation))))))
-(let ((?n 0)) (loop do (incf ?n) (go)))
+(let ((?n 0)) (loop do (incf ?n) (drive)))
 )";
   PlannedModel loop(kRooms + kShut, endless, kBinding, "HoldsAt(At(b2),time)", 20);
   REQUIRE(loop.codes() == "");

@@ -85,6 +85,16 @@ TEST_CASE("other things of other names are no renaming, unless that is said") {
   CHECK(cli.parallax({"diff", "old.e", "new.e", "--rename", "Bob=Tom"}).code == 2);
   CHECK(cli.parallax({"diff", "old.e", "new.e", "--rename", "Tom=Kim"}).code == 2);
   CHECK(cli.parallax({"diff", "old.e", "new.e", "--rename", "Bob"}).code == 2);
+  // Two names would become one: that of the old model stays, or two rules say the same.
+  cli.write("two.e", kTill + "person Kim\nHoldsAt(Paid(Kim),2).\n");
+  CHECK(cli.parallax({"diff", "two.e", "new.e", "--rename", "Bob=Kim"}).code == 2);
+  CHECK(
+      cli.parallax({"diff", "two.e", "new.e", "--rename", "Bob=Kim", "--rename", "Kim=Kim"}).code ==
+      2);
+  // Exchanged names are well.
+  CHECK(
+      cli.parallax({"diff", "two.e", "new.e", "--rename", "Eve=Kim", "--rename", "Kim=Eve"}).code <=
+      1);
   CHECK(cli.compare(kTill, kTill, 0)["renamed"].empty());
 }
 
