@@ -63,8 +63,10 @@ base::Result<Collected> wanted_cases(const SuiteOptions& options, const StoredRe
   std::erase_if(*cases, [&](const SuiteCase& one) {
     return one.name().find(options.only) == std::string::npos || (options.fast && !is_fast(one));
   });
+  // A suite that looked at fewer cases does not know what is gone.
   const auto last = last_names(earlier, options.history, [&](const SuiteSelection& suite) {
-    return suite.paths == options.paths;
+    return suite.paths == options.paths && (suite.only.empty() || suite.only == options.only) &&
+           (!suite.fast || options.fast);
   });
   auto removed = removed_cases(names, last, options.only, shard);
   if (cases->empty() && removed.empty()) {

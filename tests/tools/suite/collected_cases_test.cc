@@ -93,6 +93,14 @@ TEST_CASE("other selections, other paths and the list of quarantine count no cas
   CHECK(known["quarantined"] == 1);
 }
 
+TEST_CASE("a narrower suite in between hides no case that is gone") {
+  const SuiteFixture cli;
+  REQUIRE(cli.suite({"--update-goldens", "--history", "h.jsonl"}).code == 0);
+  take_out(cli);
+  CHECK(cli.suite({"--only", "both", "--history", "h.jsonl"}).code == 0);
+  CHECK(cli.suite({"--history", "h.jsonl"}).code == 4);
+}
+
 TEST_CASE("the history remembers cases where the results do not") {
   const SuiteFixture cli;
   REQUIRE(cli.suite({"--update-goldens", "--history", "h.jsonl"}).code == 0);
