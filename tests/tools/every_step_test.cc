@@ -73,8 +73,11 @@ TEST_CASE("an effect that the model forgets") {
                  "Holding()");
   const auto found = transient(cli);
   CHECK(found.at("first_divergence") == 2);
-  const Json forgotten = {
-      {"fluent", "BoxIn(r2)"}, {"timepoint", 2}, {"predicted", true}, {"observed", false}};
+  const Json forgotten = {{"fluent", "BoxIn(r2)"},
+                          {"timepoint", 2},
+                          {"predicted", true},
+                          {"observed", false},
+                          {"measured", "box.held = true"}};
   CHECK(found.at("first") == Json::array({forgotten}));
   CHECK(found.at("cause").at("text") == "PickUp(): not BoxIn(r2)");
   const auto text = cli.read("out/report.txt");
