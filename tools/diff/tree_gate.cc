@@ -1,9 +1,9 @@
 // A gate over two folders.
 //
-// First the files of both are compared byte by byte. Then each scenario, and each model of a
-// manifest, is read as far as needed to know which files belong to it; only where one of these
-// differs are the two revisions compiled and compared. Cost: reading both folders, and one
-// comparison for each scenario or model that changed.
+// Each scenario, and each model of a manifest, is read as far as needed to know which files belong
+// to it, wherever these lie. Only where one of them differs between the two folders are the two
+// revisions compiled and compared. Cost: reading what belongs to scenarios and models, and one
+// comparison for each that changed.
 
 #include "tools/diff/tree_gate.h"
 
@@ -54,36 +54,48 @@ class Tree {
     for (const auto& name : files_) note_subjects(name);
   }
 
-  const std::set<std::string>& files() const { return files_; }
   const std::map<std::string, RevisionKind>& subjects() const { return subjects_; }
   fs::path path_of(const std::string& name) const { return folder_ / name; }
 
-  /// The files that belong to a scenario or model, also those that were looked for in vain.
-  std::set<std::string> inputs_of(const std::string& name) const {
+  /// The files that belong to a scenario or model.
+  struct Inputs {
+    std::set<std::string> names;  // also of files that were looked for in vain
+    bool is_read = true;          // false: there may be more
+  };
+  Inputs inputs_of(const std::string& name) const {
     base::SourceFiles files;
     base::DiagnosticSink unread;  // who compares it reports
-    const bool allow_outside = context_.form().allow_outside;
     const auto path = path_of(name);
-    std::vector<fs::path> models;
-    compiler::LoadOptions load;
-    load.allow_outside = allow_outside;
-    load.named_by = {path};
-    if (subjects_.at(name) == RevisionKind::kScenario) {
-      const auto scenario = harness::load_scenario(path, files, unread, allow_outside);
+    Inputs out;
+    const auto kind = subjects_.at(name);
+    if (kind == RevisionKind::kScenario) {
+      const auto scenario =
+          harness::load_scenario(path, files, unread, context_.form().allow_outside);
+      out.is_read = scenario.has_value();
       if (scenario) {
-        for (const auto& model : scenario->models) models.emplace_back(model.text);
-        for (const auto& model : scenario->simulator.models) models.emplace_back(model.text);
+        read_models(scenario->models, path, files, unread);
+        read_models(scenario->simulator.models, path, files, unread);
       }
-    } else {
-      models.push_back(path);
+    } else if (kind == RevisionKind::kModel) {
+      read_models({{path.string(), {}}}, path, files, unread);
     }
-    if (!models.empty()) (void)compiler::load_model(models, load, files, unread);
-    std::set<std::string> out = {name};
-    for (const auto& input : files.inputs()) out.insert(name_of(base::absolute_name(input)));
+    out.is_read = out.is_read && !unread.has_errors();
+    out.names.insert(name);
+    for (const auto& input : files.inputs()) out.names.insert(name_of(base::absolute_name(input)));
     return out;
   }
 
  private:
+  void read_models(const std::vector<harness::LocatedText>& models, const fs::path& named_by,
+                   base::SourceFiles& files, base::DiagnosticSink& sink) const {
+    std::vector<fs::path> paths;
+    for (const auto& model : models) paths.emplace_back(model.text);
+    compiler::LoadOptions load;
+    load.allow_outside = context_.form().allow_outside;
+    load.named_by = {named_by};
+    if (!paths.empty()) (void)compiler::load_model(paths, load, files, sink);
+  }
+
   std::string name_of(const fs::path& path) const {
     return path.lexically_relative(folder_).generic_string();
   }
@@ -109,7 +121,7 @@ class Tree {
   void note_model(const std::string& path) {
     const auto kind = kind_of(path);
     const auto name = name_of(path);
-    if (kind && has_traces(*kind) && files_.contains(name)) subjects_.emplace(name, *kind);
+    if (kind && has_traces(*kind) && lies_there(path)) subjects_.emplace(name, *kind);
   }
 
   fs::path folder_;
@@ -118,31 +130,38 @@ class Tree {
   std::map<std::string, RevisionKind> subjects_;
 };
 
-bool same_content(const fs::path& a, const fs::path& b) {
-  std::error_code error;
-  if (fs::file_size(a, error) != fs::file_size(b, error)) return false;
-  base::DiagnosticSink unread;
-  const auto x = base::read_file(a, unread), y = base::read_file(b, unread);
-  return x && y && *x == *y;
-}
+/// Whether files of both folders are the same, each compared once, links followed. A file that only
+/// one side has, or that cannot be read, is not.
+class Unchanged {
+ public:
+  Unchanged(const Tree& before, const Tree& after) : before_(before), after_(after) {}
 
-/// Files that only one of the folders has, or that differ.
-std::set<std::string> changed_files(const Tree& before, const Tree& after) {
-  std::set<std::string> out;
-  for (const auto& name : before.files()) {
-    const bool same =
-        after.files().contains(name) && same_content(before.path_of(name), after.path_of(name));
-    if (!same) out.insert(name);
+  bool all(const std::set<std::string>& names) {
+    return std::all_of(names.begin(), names.end(), [&](const auto& name) { return one(name); });
   }
-  for (const auto& name : after.files()) {
-    if (!before.files().contains(name)) out.insert(name);
-  }
-  return out;
-}
 
-bool meet(const std::set<std::string>& a, const std::set<std::string>& b) {
-  return std::any_of(a.begin(), a.end(), [&](const auto& one) { return b.contains(one); });
-}
+ private:
+  bool one(const std::string& name) {
+    const auto known = known_.find(name);
+    if (known != known_.end()) return known->second;
+    return known_[name] = same(before_.path_of(name), after_.path_of(name));
+  }
+
+  static bool same(const fs::path& a, const fs::path& b) {
+    std::error_code error;
+    const auto kind = fs::status(a, error).type();
+    if (kind != fs::status(b, error).type()) return false;
+    // The files that count in a named folder are inputs themselves.
+    if (kind == fs::file_type::not_found || kind == fs::file_type::directory) return true;
+    base::DiagnosticSink unread;
+    const auto x = base::read_file(a, unread), y = base::read_file(b, unread);
+    return x && y && *x == *y;
+  }
+
+  const Tree& before_;
+  const Tree& after_;
+  std::map<std::string, bool> known_;
+};
 
 /// Compares what is at one place of both folders.
 std::vector<RuleResult> rules_at(const std::string& name, const Tree& before, const Tree& after,
@@ -191,7 +210,7 @@ base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
     return context.sink().error(codes::kNoGateRules, rules.source, "models");
   }
   const Tree before(old_folder, context), after(new_folder, context);
-  const auto changed = changed_files(before, after);
+  Unchanged unchanged(before, after);
   GateReport out;
   out.kind = "tree";
   out.old_name = old_folder;
@@ -204,7 +223,9 @@ base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
           {name, RuleOutcome::kUndecided, "it is gone: nothing is left to compare"});
       continue;
     }
-    if (!meet(before.inputs_of(name), changed) && !meet(after.inputs_of(name), changed)) {
+    const auto old_inputs = before.inputs_of(name), new_inputs = after.inputs_of(name);
+    if (old_inputs.is_read && new_inputs.is_read && unchanged.all(old_inputs.names) &&
+        unchanged.all(new_inputs.names)) {
       ++untouched;
       continue;
     }

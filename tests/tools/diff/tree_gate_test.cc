@@ -1,0 +1,100 @@
+// A gate over two folders, or over two revisions of one: that no change passes because the gate did
+// not look at it.
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/tools/history/git_repository.h"
+
+namespace parallax::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kNames =
+    "range time 0 1\nfluent Alive()\nfluent Loaded()\nevent Shoot()\nHoldsAt(Alive(),0).\n";
+constexpr const char* kShot =
+    "[time] HoldsAt(Loaded(),time) -> Terminates(Shoot(),Alive(),time).\n";
+constexpr const char* kDeadlier = "[time] Terminates(Shoot(),Alive(),time).\n";
+
+class Trees : public GitFixture {
+ public:
+  Trees() { write("rules.yaml", "models: {lost_traces: forbidden, gained_traces: forbidden}\n"); }
+
+  void put(const std::string& name, const std::string& text) const {
+    fs::create_directories((folder() / name).parent_path());
+    write(name, text);
+  }
+  /// `TREE/cases`: a manifest, and its model, which loads a file.
+  void project(const std::string& tree, const std::string& loaded) const {
+    put(tree + "/.parallax-root", "");
+    put(tree + "/cases/suite.yaml",
+        "cases:\n  - {id: turkey, model: domain.e, expect: {traces: 4}}\n");
+    put(tree + "/cases/domain.e", kNames + ("load " + loaded + "\n"));
+  }
+  ProcessResult gate(std::vector<std::string> trees, ProcessOptions options = {}) const {
+    trees.insert(trees.begin(), {"diff", "--gate", (folder() / "rules.yaml").string()});
+    return parallax(std::move(trees), std::move(options));
+  }
+  /// The gate's answer must have this exit code and these words.
+  void check(const ProcessResult& answer, int code, const std::string& words) const {
+    CHECK_MESSAGE(answer.code == code, answer.out, answer.err);
+    CHECK_MESSAGE(answer.out.find(words) != std::string::npos, answer.out, answer.err);
+  }
+};
+
+constexpr const char* kLost = "broken         domain.e: models.lost_traces";
+
+TEST_CASE("a file that belongs to a model counts wherever it lies") {
+  const Trees trees;
+  struct Place {
+    const char* loaded;
+    const char* file;
+  };
+  for (const auto& place :
+       {Place{"../shared/shot.e", "shared/shot.e"}, Place{".parts/shot.e", "cases/.parts/shot.e"},
+        Place{"done/shot.e", "cases/done/shot.e"}, Place{"link.e", "cases/.parts/shot.e"}}) {
+    CAPTURE(place.loaded);
+    for (const std::string tree : {"a", "b"}) {
+      fs::remove_all(trees.folder() / tree);
+      trees.project(tree, place.loaded);
+      trees.put(tree + "/" + place.file, kShot);
+      trees.put(tree + "/cases/done/report.json", "{}\n");
+      if (place.loaded == std::string("link.e")) {
+        fs::create_symlink(".parts/shot.e", trees.folder() / tree / "cases/link.e");
+      }
+    }
+    trees.check(trees.gate({"a/cases", "b/cases"}), 0, "no file of 1 scenario or model changed");
+    trees.put(std::string("b/") + place.file, kDeadlier);
+    trees.check(trees.gate({"a/cases", "b/cases"}), 1, kLost);
+  }
+}
+
+TEST_CASE("a model that a manifest names counts in a hidden folder, too") {
+  const Trees trees;
+  for (const std::string tree : {"a", "b"}) {
+    trees.put(tree + "/suite.yaml",
+              "cases:\n  - {id: turkey, model: .parts/domain.e, expect: {traces: 4}}\n");
+    trees.put(tree + "/.parts/domain.e", kNames + std::string(kShot));
+  }
+  trees.check(trees.gate({"a", "b"}), 0, "no file of 1 scenario or model changed");
+  trees.put("b/.parts/domain.e", kNames + std::string(kDeadlier));
+  trees.check(trees.gate({"a", "b"}), 1, "broken         .parts/domain.e: models.lost_traces");
+}
+
+TEST_CASE("what lies beside the folder of two revisions counts") {
+  const Trees trees;
+  trees.project("a", "../shared/shot.e");
+  trees.put("a/shared/shot.e", kShot);
+  trees.commit("start");
+  trees.put("a/shared/shot.e", kDeadlier);
+  trees.commit("forget the condition");
+  trees.check(trees.gate({"HEAD^", "HEAD", "a/cases"}), 1, kLost);
+  trees.check(trees.gate({"HEAD", "HEAD", "a/cases"}), 0, "no file of 1 scenario or model changed");
+}
+
+}  // namespace
+}  // namespace parallax::test
