@@ -1,9 +1,9 @@
 // A gate over two folders.
 //
-// Each scenario, and each model of a manifest, is read as far as needed to know which files belong
-// to it, wherever these lie. Only where one of them differs between the two folders are the two
-// revisions compiled and compared. Cost: reading what belongs to scenarios and models, and one
-// comparison for each that changed.
+// Each scenario, each model of a manifest, and each that nothing reads, is read as far as needed to
+// know which files belong to it, wherever these lie. Only where one of them differs between the two
+// folders are the two revisions compiled and compared. Cost: reading what belongs to scenarios and
+// models, and one comparison for each that changed.
 
 #include "tools/diff/tree_gate.h"
 
@@ -38,8 +38,8 @@ bool is_run_folder(const fs::path& folder) {
 /// One folder: its files, and what of them is compared. Names are relative to it.
 class Tree {
  public:
-  Tree(const std::string& folder, Context& context)
-      : folder_(base::absolute_name(folder)), context_(context) {
+  Tree(const std::string& folder, const LoadRevision& options, Context& context)
+      : folder_(base::absolute_name(folder)), options_(options), context_(context) {
     std::error_code error;
     fs::recursive_directory_iterator at(folder_, error), end;
     for (; !error && at != end; at.increment(error)) {
@@ -47,15 +47,28 @@ class Tree {
       const bool is_hidden = at->path().filename().string().starts_with('.');
       if (at->is_directory(unread)) {
         if (is_hidden || is_run_folder(at->path())) at.disable_recursion_pending();
-      } else if (!is_hidden && fs::is_regular_file(at->symlink_status(unread))) {
+      } else if (!is_hidden && at->is_regular_file(unread)) {
         files_.insert(name_of(at->path()));
       }
     }
+    if (error) broken_.insert(".");
     for (const auto& name : files_) note_subjects(name);
+    note_models_of_no_one();
   }
 
   const std::map<std::string, RevisionKind>& subjects() const { return subjects_; }
+  /// Files that may be or name models and cannot be read; `.`: a folder in the tree.
+  const std::set<std::string>& broken() const { return broken_; }
   fs::path path_of(const std::string& name) const { return folder_ / name; }
+  /// How a file is compared; none if there is none. One that is a scenario or model on the other
+  /// side alone is compared as that.
+  std::optional<RevisionKind> kind_at(const std::string& name) const {
+    const auto found = subjects_.find(name);
+    if (found != subjects_.end()) return found->second;
+    std::error_code error;
+    if (fs::symlink_status(path_of(name), error).type() == fs::file_type::not_found) return {};
+    return kind_of(path_of(name).string());
+  }
 
   /// The files that belong to a scenario or model.
   struct Inputs {
@@ -67,7 +80,7 @@ class Tree {
     base::DiagnosticSink unread;  // who compares it reports
     const auto path = path_of(name);
     Inputs out;
-    const auto kind = subjects_.at(name);
+    const auto kind = kind_at(name);
     if (kind == RevisionKind::kScenario) {
       const auto scenario =
           harness::load_scenario(path, files, unread, context_.form().allow_outside);
@@ -93,6 +106,10 @@ class Tree {
     compiler::LoadOptions load;
     load.allow_outside = context_.form().allow_outside;
     load.named_by = {named_by};
+    if (named_by.extension() == ".e") {
+      const auto& folders = options_.model.include_dirs;
+      load.include_dirs.assign(folders.begin(), folders.end());
+    }
     if (!paths.empty()) (void)compiler::load_model(paths, load, files, sink);
   }
 
@@ -107,14 +124,38 @@ class Tree {
     const auto kind = harness::suite_file_kind(path_of(name), allow_outside);
     if (kind == harness::SuiteFileKind::kScenario) {
       subjects_.emplace(name, RevisionKind::kScenario);
+    } else if (kind == harness::SuiteFileKind::kBroken) {
+      broken_.insert(name);
     } else if (kind == harness::SuiteFileKind::kManifest) {
       base::SourceFiles files;
       base::DiagnosticSink unread;
       const auto manifest = harness::load_manifest(path_of(name), files, unread, allow_outside);
-      if (!manifest) return;
+      if (!manifest) {
+        broken_.insert(name);
+        return;
+      }
       for (const auto& one : manifest->cases) {
         for (const auto& model : one.models) note_model(base::absolute_name(model.text));
       }
+    }
+  }
+
+  /// Models that neither a scenario nor a manifest nor another model reads.
+  void note_models_of_no_one() {
+    std::set<std::string> read, unread;
+    for (const auto& [name, kind] : subjects_) read.merge(inputs_of(name).names);
+    for (const auto& name : files_) {
+      if (fs::path(name).extension() == ".e" && !read.contains(name)) unread.insert(name);
+    }
+    read.clear();
+    for (const auto& name : unread) {
+      auto inputs = inputs_of(name).names;
+      inputs.erase(name);
+      // Where models read one another, the first stands for all.
+      if (!read.contains(name)) read.merge(inputs);
+    }
+    for (const auto& name : unread) {
+      if (!read.contains(name)) subjects_.emplace(name, RevisionKind::kModel);
     }
   }
 
@@ -125,8 +166,9 @@ class Tree {
   }
 
   fs::path folder_;
+  const LoadRevision& options_;
   Context& context_;
-  std::set<std::string> files_;
+  std::set<std::string> files_, broken_;
   std::map<std::string, RevisionKind> subjects_;
 };
 
@@ -169,9 +211,13 @@ std::vector<RuleResult> rules_at(const std::string& name, const Tree& before, co
                                  GateReport& all, Context& context) {
   Context own(context.form(), context.stop());
   const GateInput input{before.path_of(name).string(), after.path_of(name).string(),
-                        before.subjects().at(name), after.subjects().at(name), options};
-  auto report = hold_gate(input, rules, own);
+                        *before.kind_at(name), *after.kind_at(name), options};
   std::vector<RuleResult> out;
+  if (!has_traces(input.old_kind) || !has_traces(input.new_kind)) {
+    out.push_back({name, RuleOutcome::kUndecided, "it is no model on both sides"});
+    return out;
+  }
+  auto report = hold_gate(input, rules, own);
   if (!report) {
     const auto said = own.sink().sorted();
     out.push_back({name, RuleOutcome::kUndecided,
@@ -209,7 +255,7 @@ base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
   if (!rules.models) {
     return context.sink().error(codes::kNoGateRules, rules.source, "models");
   }
-  const Tree before(old_folder, context), after(new_folder, context);
+  const Tree before(old_folder, options.load, context), after(new_folder, options.load, context);
   Unchanged unchanged(before, after);
   GateReport out;
   out.kind = "tree";
@@ -217,13 +263,38 @@ base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
   out.new_name = new_folder;
   out.undecided_passes = rules.undecided_passes;
   std::int64_t untouched = 0;
-  for (const auto& [name, kind] : before.subjects()) {
-    if (!after.subjects().contains(name)) {
+  std::set<std::string> subjects, broken = before.broken(), added;
+  for (const auto* tree : {&before, &after}) {
+    for (const auto& [name, kind] : tree->subjects()) subjects.insert(name);
+    broken.insert(tree->broken().begin(), tree->broken().end());
+  }
+  for (const auto& name : broken) {
+    const bool in_old = before.broken().contains(name), in_new = after.broken().contains(name);
+    out.rules.push_back({name, RuleOutcome::kUndecided,
+                         in_old && in_new ? "it cannot be read on either side"
+                         : in_old         ? "it cannot be read on the old side"
+                                          : "it cannot be read on the new side"});
+  }
+  if (subjects.empty() && broken.empty()) {
+    out.rules.push_back({"models", RuleOutcome::kUndecided,
+                         "neither folder has a scenario or a model: nothing can be compared"});
+  }
+  for (const auto& name : subjects) {
+    if (broken.contains(name)) continue;
+    if (!after.kind_at(name)) {
       out.rules.push_back(
           {name, RuleOutcome::kUndecided, "it is gone: nothing is left to compare"});
       continue;
     }
-    const auto old_inputs = before.inputs_of(name), new_inputs = after.inputs_of(name);
+    const auto new_inputs = after.inputs_of(name);
+    if (!before.kind_at(name)) {
+      added.insert(name);
+      if (!new_inputs.is_read) {
+        out.rules.push_back({name, RuleOutcome::kUndecided, "it is new, and cannot be read"});
+      }
+      continue;
+    }
+    const auto old_inputs = before.inputs_of(name);
     if (old_inputs.is_read && new_inputs.is_read && unchanged.all(old_inputs.names) &&
         unchanged.all(new_inputs.names)) {
       ++untouched;
@@ -232,9 +303,7 @@ base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
     auto found = rules_at(name, before, after, rules, options, out, context);
     std::move(found.begin(), found.end(), std::back_inserter(out.rules));
   }
-  for (const auto& [name, kind] : after.subjects()) {
-    if (!before.subjects().contains(name)) out.remarks.push_back(name + " is new");
-  }
+  for (const auto& name : added) out.remarks.push_back(name + " is new");
   out.remarks.push_back(
       fmt::format("no file of {} changed",
                   base::counted(untouched, "scenario or model", "scenarios and models")));

@@ -9,11 +9,12 @@ namespace parallax::tools {
 /// Is it a folder of a project, and not that of a run?
 bool is_tree(const std::string& path);
 
-/// Checks the change from one folder to another against the rules about models: every scenario, and
-/// every model that a manifest names, that both have at the same place and that reads a file that
-/// changed. What reads none is neither compiled nor compared. Rules are named `FILE: RULE`; where
-/// all are kept one line says so. A scenario or model that is gone, or cannot be read, is not
-/// decidable. Reports kNoGateRules where the rules have none about models.
+/// Checks the change from one folder to another against the rules about models: every scenario,
+/// every model that a manifest names, and every other `.e` file that none of these reads, that both
+/// have at the same place and of which a file changed, wherever that lies. What reads none is
+/// neither compiled nor compared. Rules are named `FILE: RULE`; where all are kept one line says
+/// so. What is gone or cannot be read is not decidable, and neither is a change of folders that
+/// hold no model. Reports kNoGateRules where the rules have none about models.
 base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
                                         const std::string& new_folder,
                                         const harness::GateRules& rules,

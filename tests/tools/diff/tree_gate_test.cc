@@ -96,5 +96,57 @@ TEST_CASE("what lies beside the folder of two revisions counts") {
   trees.check(trees.gate({"HEAD", "HEAD", "a/cases"}), 0, "no file of 1 scenario or model changed");
 }
 
+TEST_CASE("what cannot be read does not pass as new or untouched") {
+  const Trees trees;
+  for (const std::string tree : {"a", "b"}) {
+    trees.project(tree, "shot.e");
+    trees.put(tree + "/cases/shot.e", kShot);
+  }
+  const auto suite = trees.read("a/cases/suite.yaml");
+  const auto gate = [&] { return trees.gate({"a/cases", "b/cases"}); };
+  trees.check(gate(), 0, "no file of 1 scenario or model changed");
+  // A manifest that no longer can be read, and one that could not before.
+  trees.put("b/cases/suite.yaml", "cases: [\n");
+  trees.check(gate(), 1, "suite.yaml: it cannot be read on the new side");
+  trees.put("a/cases/suite.yaml", "cases: 3\n");
+  trees.put("b/cases/suite.yaml", suite);
+  trees.check(gate(), 1, "suite.yaml: it cannot be read on the old side");
+  trees.put("a/cases/suite.yaml", suite);
+  // A scenario that was broken and is good now.
+  trees.put("a/cases/fetch.yaml", "include: absent.yaml\nmodel: domain.e\n");
+  trees.put("b/cases/fetch.yaml", "model: domain.e\nexpect: {fast: true}\nworld: {}\n");
+  const auto mended = gate();
+  trees.check(mended, 1, "fetch.yaml: it cannot be read on the old side");
+  CHECK(mended.out.find("fetch.yaml is new") == std::string::npos);
+  // One that was none before: the file is not new, and as a scenario it has mistakes.
+  trees.put("a/cases/fetch.yaml", "fast: true\n");
+  const auto other = gate();
+  trees.check(other, 1, "fetch.yaml: it cannot be compared");
+  CHECK(other.out.find("fetch.yaml is new") == std::string::npos);
+  fs::remove(trees.folder() / "a/cases/fetch.yaml");
+  trees.check(gate(), 1, "fetch.yaml: it is new, and cannot be read");
+  fs::remove(trees.folder() / "b/cases/fetch.yaml");
+  trees.put("b/cases/other.e", kNames);
+  trees.check(gate(), 0, "other.e is new");
+  // A file that neither side has.
+  for (const std::string tree : {"a", "b"}) fs::remove(trees.folder() / tree / "cases/shot.e");
+  trees.check(gate(), 1, "domain.e: it cannot be compared");
+}
+
+TEST_CASE("folders without a scenario or manifest are compared by their models, if they have any") {
+  const Trees trees;
+  for (const std::string tree : {"a", "b"}) {
+    trees.put(tree + "/notes.txt", tree);
+  }
+  trees.check(trees.gate({"a", "b"}), 1, "neither folder has a scenario or a model");
+  for (const std::string tree : {"a", "b"}) {
+    trees.put(tree + "/domain.e", kNames + std::string("load shot.e\n"));
+    trees.put(tree + "/shot.e", kShot);
+  }
+  trees.check(trees.gate({"a", "b"}), 0, "no file of 1 scenario or model changed");
+  trees.put("b/shot.e", kDeadlier);
+  trees.check(trees.gate({"a", "b"}), 1, kLost);
+}
+
 }  // namespace
 }  // namespace parallax::test
