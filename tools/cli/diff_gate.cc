@@ -23,10 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Takes the name of a temporary folder out.
-void without_folder(const std::string& folder, std::string& text) {
-  for (auto at = text.find(folder); at != std::string::npos; at = text.find(folder, at)) {
-    text.erase(at, folder.size());
+/// Names files below the root of a checkout as seen from there.
+void without_root(const std::string& root, std::string& text) {
+  for (auto at = text.find(root); at != std::string::npos; at = text.find(root, at)) {
+    const auto end = at + root.size();
+    const bool is_whole = end == text.size() || text[end] != '/';
+    text.replace(at, root.size() + (is_whole ? 0 : 1), is_whole ? "." : "");
   }
 }
 
@@ -132,14 +134,18 @@ int run_revision_gate(const GateRevisions& revisions, const ModelDiffOptions& op
   if (!before || !after) return 0;
   const base::TemporaryFolder scratch("gate");
   if (scratch.path().empty()) return refuse("", "no temporary folder can be made");
-  BorrowedRepository repository(scratch.path() / "old");
+  // As messages name it, also where a link leads there.
+  const auto trees = base::real_path(scratch.path());
+  const auto old_tree = trees / "old", new_tree = trees / "new";
+  BorrowedRepository repository(old_tree);
   if (!repository.make(folder.string(), *before, sink)) return 0;
-  const auto new_tree = scratch.path() / "new";
   if (!repository.add_tree(new_tree, *after)) {
     return refuse(revisions.after, "git cannot check it out");
   }
   const auto inside = path.lexically_relative(base::real_path(*top));
-  const auto old_place = fs::path(repository.path()) / inside, new_place = new_tree / inside;
+  const bool is_top = inside == ".";
+  const auto old_place = is_top ? old_tree : old_tree / inside;
+  const auto new_place = is_top ? new_tree : new_tree / inside;
   if (!fs::is_directory(old_place, error) || !fs::is_directory(new_place, error)) {
     return refuse(revisions.path, "it is no folder in both revisions");
   }
@@ -149,11 +155,12 @@ int run_revision_gate(const GateRevisions& revisions, const ModelDiffOptions& op
     if (report) {
       report->old_name = revisions.before;
       report->new_name = revisions.after;
-      for (auto& rule : report->rules) {
-        for (auto* text : {&rule.words, &rule.witness}) {
-          without_folder(old_place.string() + '/', *text);
-          without_folder(new_place.string() + '/', *text);
-        }
+      std::vector<std::string*> texts;
+      for (auto& rule : report->rules) texts.insert(texts.end(), {&rule.words, &rule.witness});
+      for (auto& remark : report->remarks) texts.push_back(&remark);
+      for (auto* text : texts) {
+        without_root(old_tree.string(), *text);
+        without_root(new_tree.string(), *text);
       }
     }
     return report;

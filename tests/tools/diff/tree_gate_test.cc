@@ -148,5 +148,36 @@ TEST_CASE("folders without a scenario or manifest are compared by their models, 
   trees.check(trees.gate({"a", "b"}), 1, kLost);
 }
 
+TEST_CASE("no temporary folder is named, and two calls say the same") {
+  const Trees trees;
+  trees.put("p/domain.e", kNames + std::string(kShot));
+  trees.put("p/cut.e", "range time 0 1\nfluent On()\n");
+  trees.commit("start");
+  trees.put("p/domain.e", kNames + std::string(kDeadlier));
+  trees.put("p/cut.e", "range time 0 1\nfluent On(\n");
+  trees.commit("forget the condition");
+  ProcessOptions inside;
+  inside.folder = (trees.folder() / "p").string();
+  struct Call {
+    std::vector<std::string> arguments;
+    ProcessOptions options;
+  };
+  for (const auto& [arguments, options] :
+       {Call{{"HEAD^", "HEAD"}, {}}, Call{{"HEAD^", "HEAD", "."}, {}},
+        Call{{"HEAD^", "HEAD", "p"}, {}}, Call{{"HEAD^", "HEAD"}, inside}}) {
+    for (const bool as_document : {false, true}) {
+      auto words = arguments;
+      if (as_document) words.emplace_back("--json");
+      const auto answer = trees.gate(words, options);
+      trees.check(answer, 1, "models.lost_traces");
+      CHECK_MESSAGE(answer.out.find("p/domain.e:6") != std::string::npos, answer.out);
+      CHECK_MESSAGE(answer.out.find("/p/domain.e") == std::string::npos, answer.out);
+      CHECK_MESSAGE(answer.out.find("/new") == std::string::npos, answer.out);
+      CHECK_MESSAGE(answer.out.find("/old") == std::string::npos, answer.out);
+      CHECK(answer.out == trees.gate(words, options).out);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace parallax::test
