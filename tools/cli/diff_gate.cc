@@ -142,16 +142,24 @@ int run_revision_gate(const GateRevisions& revisions, const ModelDiffOptions& op
   if (!repository.add_tree(new_tree, *after)) {
     return refuse(revisions.after, "git cannot check it out");
   }
-  const auto inside = path.lexically_relative(base::real_path(*top));
+  const auto own_tree = base::real_path(*top), here = base::real_path(".");
+  const auto inside = path.lexically_relative(own_tree);
   const bool is_top = inside == ".";
   const auto old_place = is_top ? old_tree : old_tree / inside;
   const auto new_place = is_top ? new_tree : new_tree / inside;
   if (!fs::is_directory(old_place, error) || !fs::is_directory(new_place, error)) {
     return refuse(revisions.path, "it is no folder in both revisions");
   }
+  const auto commands_in = [&](const fs::path& tree) {
+    const bool is_inside = base::lies_below(here, own_tree);
+    const auto current = (tree / here.lexically_relative(own_tree)).lexically_normal();
+    return CommandFolder{tree, {is_inside ? current : here}, {own_tree}};
+  };
+  auto own = options;
+  own.old_commands = commands_in(old_tree);
+  own.new_commands = commands_in(new_tree);
   const auto hold = [&](const harness::GateRules& rules) {
-    auto report =
-        hold_tree_gate(old_place.string(), new_place.string(), rules, options, invocation);
+    auto report = hold_tree_gate(old_place.string(), new_place.string(), rules, own, invocation);
     if (report) {
       report->old_name = revisions.before;
       report->new_name = revisions.after;

@@ -125,8 +125,11 @@ class ModelComparison {
 
   base::Result<ModelDifference> run(const std::string& old_path, RevisionKind old_kind,
                                     const std::string& new_path, RevisionKind new_kind) {
-    auto a = load_model_revision(old_path, old_kind, options_.load, context_);
-    auto b = load_model_revision(new_path, new_kind, options_.load, context_);
+    auto old_load = options_.load, new_load = options_.load;
+    if (options_.old_commands) old_load.commands = options_.old_commands;
+    if (options_.new_commands) new_load.commands = options_.new_commands;
+    auto a = load_model_revision(old_path, old_kind, old_load, context_);
+    auto b = load_model_revision(new_path, new_kind, new_load, context_);
     if (!a || !b) return context_.sink().already_reported();
     out_.old_side = *std::move(a);
     out_.new_side = *std::move(b);

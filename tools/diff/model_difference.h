@@ -55,6 +55,8 @@ std::string to_json(const FactReport& report, compiler::FactKind kind);
 
 struct ModelDiffOptions {
   LoadRevision load;
+  /// Where each side has the files of a simulator's command, instead of `load.commands`.
+  std::optional<CommandFolder> old_commands = std::nullopt, new_commands = std::nullopt;
   bool facts = true;   // compare declarations, axioms and, of scenarios, settings
   bool traces = true;  // compare meaning
   /// Names of the old side that have others in the new one; and whether more of them are looked

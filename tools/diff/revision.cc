@@ -1,5 +1,6 @@
 #include "tools/diff/revision.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "compiler/artifact/artifact_writer.h"
@@ -81,27 +82,54 @@ void add_world_facts(const harness::Scenario& scenario, const compiler::LoadOpti
   }
 }
 
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+/// Where the side has the file that a word of a command names.
+std::string word_of_side(const std::string& word, const CommandFolder& side) {
+  std::vector<fs::path> places;
+  for (const auto& folder : side.current) {
+    auto place = (folder / word).lexically_normal();
+    const auto lies_in = [&](const fs::path& root) {
+      return std::mismatch(root.begin(), root.end(), place.begin(), place.end()).first ==
+             root.end();
+    };
+    const auto other = std::find_if(side.others.begin(), side.others.end(), lies_in);
+    if (!lies_in(side.root) && other != side.others.end()) {
+      place = side.root / place.lexically_relative(*other);
+    }
+    places.push_back(std::move(place));
+  }
+  places.push_back(side.root / word);
+  const auto found = std::find_if(places.begin(), places.end(), is_file);
+  return (found == places.end() ? places.front() : *found).string();
+}
+
 /// Adds the hash of the files that an external simulator's command names. The command's words are
 /// a setting of their own.
 void add_command_files(const std::string& path, const harness::Scenario& scenario,
+                       const std::optional<CommandFolder>& side,
                        harness::ScenarioSettings& settings) {
   const auto& command = scenario.simulator.command;
   if (command.empty()) return;
   harness::insert(settings, {{"simulator", "command", "files"},
-                             "SHA-256 " + harness::hash_of_command(command),
+                             "SHA-256 " + hash_of_command(command, side),
                              std::nullopt,
                              true,
                              path,
                              0});
 }
 
-base::Result<ModelRevision> load_scenario_revision(const std::string& path, Context& context) {
+base::Result<ModelRevision> load_scenario_revision(const std::string& path,
+                                                   const LoadRevision& options, Context& context) {
   ModelRevision out{path, RevisionKind::kScenario, {}, harness::ScenarioSettings(), std::nullopt,
                     false};
   auto loaded = load_scenario_model(path, context, {.settings = &*out.settings});
   if (!loaded) return context.sink().already_reported();
   const auto& scenario = loaded->scenario;
-  add_command_files(path, scenario, *out.settings);
+  add_command_files(path, scenario, options.commands, *out.settings);
   std::vector<std::string> models;
   for (const auto& model : scenario.models) models.push_back(model.text);
   compiler::LoadOptions load;
@@ -155,10 +183,21 @@ bool has_traces(RevisionKind kind) {
          kind == RevisionKind::kScenario;
 }
 
+std::string hash_of_command(const std::vector<std::string>& command,
+                            const std::optional<CommandFolder>& side) {
+  if (!side) return harness::hash_of_command(command);
+  auto words = command;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    // A program without a slash is looked up in PATH.
+    if (i > 0 || words[i].find('/') != std::string::npos) words[i] = word_of_side(words[i], *side);
+  }
+  return harness::hash_of_command(words);
+}
+
 base::Result<ModelRevision> load_model_revision(const std::string& path, RevisionKind kind,
                                                 const LoadRevision& options, Context& context) {
   if (kind == RevisionKind::kArtifact) return load_compiled(path, options, context);
-  if (kind == RevisionKind::kScenario) return load_scenario_revision(path, context);
+  if (kind == RevisionKind::kScenario) return load_scenario_revision(path, options, context);
   return load_texts(path, options, context);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,9 +42,24 @@ struct ModelRevision {
   bool is_text = false;
 };
 
+/// Where one side of a comparison has the files that the command of a simulator names.
+struct CommandFolder {
+  std::filesystem::path root;  // of the side's files
+  /// Folders that stand for the current one, where relative words are looked up.
+  std::vector<std::filesystem::path> current;
+  /// A file below one of these is at the same place below `root` on this side.
+  std::vector<std::filesystem::path> others;
+};
+
+/// SHA-256 over the contents of the files that the command names, as the side has them; without a
+/// side, as they would be started here.
+std::string hash_of_command(const std::vector<std::string>& command,
+                            const std::optional<CommandFolder>& side);
+
 struct LoadRevision {
   ModelOptions model;  // include folders, horizon, compat; `models` are put to every model (.e)
   bool compile = true;
+  std::optional<CommandFolder> commands = std::nullopt;  // empty: the current folder
 };
 
 /// Reads and, if asked for, compiles one side.

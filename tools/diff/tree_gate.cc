@@ -17,6 +17,7 @@
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/file_names.h"
+#include "compiler/base/path_gate.h"
 #include "compiler/base/words.h"
 #include "compiler/syntax/loader.h"
 #include "harness/config/suite_manifest.h"
@@ -38,8 +39,8 @@ bool is_run_folder(const fs::path& folder) {
 /// One folder: its files, and what of them is compared. Names are relative to it.
 class Tree {
  public:
-  Tree(const std::string& folder, const LoadRevision& options, Context& context)
-      : folder_(base::absolute_name(folder)), options_(options), context_(context) {
+  Tree(const std::string& folder, LoadRevision options, Context& context)
+      : folder_(base::absolute_name(folder)), options_(std::move(options)), context_(context) {
     std::error_code error;
     fs::recursive_directory_iterator at(folder_, error), end;
     for (; !error && at != end; at.increment(error)) {
@@ -73,6 +74,7 @@ class Tree {
   /// The files that belong to a scenario or model.
   struct Inputs {
     std::set<std::string> names;  // also of files that were looked for in vain
+    std::string command_hash;     // over the files that a simulator's command names
     bool is_read = true;          // false: there may be more
   };
   Inputs inputs_of(const std::string& name) const {
@@ -88,6 +90,7 @@ class Tree {
       if (scenario) {
         read_models(scenario->models, path, files, unread);
         read_models(scenario->simulator.models, path, files, unread);
+        out.command_hash = hash_of_command(scenario->simulator.command, options_.commands);
       }
     } else if (kind == RevisionKind::kModel) {
       read_models({{path.string(), {}}}, path, files, unread);
@@ -166,7 +169,7 @@ class Tree {
   }
 
   fs::path folder_;
-  const LoadRevision& options_;
+  LoadRevision options_;
   Context& context_;
   std::set<std::string> files_, broken_;
   std::map<std::string, RevisionKind> subjects_;
@@ -241,6 +244,27 @@ std::vector<RuleResult> rules_at(const std::string& name, const Tree& before, co
   return out;
 }
 
+/// Where each of two folders has what a command names from the current one: a command that is
+/// started in one of them is started at the same place of the other.
+void add_command_folders(const fs::path& before, const fs::path& after, ModelDiffOptions& options) {
+  const auto here = base::real_path(".");
+  const bool in_old = base::lies_below(here, before), in_new = base::lies_below(here, after);
+  // Where one folder lies in the other, both hold what lies in the inner one.
+  const bool old_is_inner = base::lies_below(before, after);
+  const auto& anchor = in_old && (!in_new || old_is_inner) ? before : after;
+  const auto side = [&](const fs::path& root) {
+    CommandFolder out{root, {}, {before, after}};
+    const bool is_above = base::lies_below(anchor, here);
+    if (in_old || in_new || is_above) {
+      out.current.push_back((root / here.lexically_relative(anchor)).lexically_normal());
+    }
+    if (!in_old && !in_new) out.current.push_back(here);
+    return out;
+  };
+  options.old_commands = side(before);
+  options.new_commands = side(after);
+}
+
 }  // namespace
 
 bool is_tree(const std::string& path) {
@@ -251,11 +275,18 @@ bool is_tree(const std::string& path) {
 base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
                                         const std::string& new_folder,
                                         const harness::GateRules& rules,
-                                        const ModelDiffOptions& options, Context& context) {
+                                        const ModelDiffOptions& given, Context& context) {
   if (!rules.models) {
     return context.sink().error(codes::kNoGateRules, rules.source, "models");
   }
-  const Tree before(old_folder, options.load, context), after(new_folder, options.load, context);
+  auto options = given;
+  if (!options.old_commands || !options.new_commands) {
+    add_command_folders(base::real_path(old_folder), base::real_path(new_folder), options);
+  }
+  auto old_load = options.load, new_load = options.load;
+  old_load.commands = options.old_commands;
+  new_load.commands = options.new_commands;
+  const Tree before(old_folder, old_load, context), after(new_folder, new_load, context);
   Unchanged unchanged(before, after);
   GateReport out;
   out.kind = "tree";
@@ -295,7 +326,8 @@ base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
       continue;
     }
     const auto old_inputs = before.inputs_of(name);
-    if (old_inputs.is_read && new_inputs.is_read && unchanged.all(old_inputs.names) &&
+    if (old_inputs.is_read && new_inputs.is_read &&
+        old_inputs.command_hash == new_inputs.command_hash && unchanged.all(old_inputs.names) &&
         unchanged.all(new_inputs.names)) {
       ++untouched;
       continue;

@@ -14,7 +14,9 @@ bool is_tree(const std::string& path);
 /// have at the same place and of which a file changed, wherever that lies. What reads none is
 /// neither compiled nor compared. Rules are named `FILE: RULE`; where all are kept one line says
 /// so. What is gone or cannot be read is not decidable, and neither is a change of folders that
-/// hold no model. Reports kNoGateRules where the rules have none about models.
+/// hold no model. Where `options` do not say where each side has the files of commands, a folder
+/// has them at the place that they have in the other. Reports kNoGateRules where the rules have
+/// none about models.
 base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
                                         const std::string& new_folder,
                                         const harness::GateRules& rules,

@@ -179,5 +179,53 @@ TEST_CASE("no temporary folder is named, and two calls say the same") {
   }
 }
 
+constexpr const char* kOtherProgram = "broken         own.yaml: models.physics";
+
+TEST_CASE("the program of an external simulator is that of each revision") {
+  const Trees trees;
+  trees.write("rules.yaml", "models: {physics: forbidden}\n");
+  trees.put("own.yaml", "include: scenario.yaml\nsimulator: {command: [sh, tools/sim.sh]}\n");
+  trees.put("tools/sim.sh", "exit 1\n");
+  trees.commit("start");
+  trees.put("tools/sim.sh", "exit 2\n");
+  trees.commit("simulate otherwise");
+  const auto answer = trees.gate({"HEAD^", "HEAD"});
+  trees.check(answer, 1, kOtherProgram);
+  CHECK_MESSAGE(answer.out.find("simulator.command.files") != std::string::npos, answer.out);
+  CHECK(trees.gate({"HEAD", "HEAD"}).code == 0);
+  // From a folder of the checkout, where the command is written for it.
+  trees.put("own.yaml", "include: scenario.yaml\nsimulator: {command: [sh, ./sim.sh]}\n");
+  trees.commit("start it in its folder");
+  trees.put("tools/sim.sh", "exit 3\n");
+  trees.commit("simulate otherwise again");
+  ProcessOptions inside;
+  inside.folder = (trees.folder() / "tools").string();
+  trees.check(trees.gate({"HEAD^", "HEAD", ".."}, inside), 1, kOtherProgram);
+}
+
+TEST_CASE("the program of an external simulator is that of each folder") {
+  const Trees trees;
+  trees.write("rules.yaml", "models: {physics: forbidden}\n");
+  for (const std::string tree : {"a", "b"}) {
+    fs::create_directories(trees.folder() / tree);
+    for (const auto* name : {"scenario.yaml", "common.yaml", "world.yaml", "domain.e", "start.e",
+                             "fetch.lisp", "robot.bind"}) {
+      fs::copy(trees.folder() / name, trees.folder() / tree / name);
+    }
+    trees.put(tree + "/own.yaml",
+              "include: scenario.yaml\nsimulator: {command: [sh, tools/sim.sh]}\n");
+    trees.put(tree + "/tools/sim.sh", "exit 1\n");
+  }
+  ProcessOptions inside;
+  inside.folder = (trees.folder() / "b").string();
+  trees.check(trees.gate({"../a", "."}, inside), 0, "no file of 2 scenarios and models changed");
+  trees.put("b/tools/sim.sh", "exit 2\n");
+  trees.check(trees.gate({"../a", "."}, inside), 1, kOtherProgram);
+  trees.check(trees.gate({"a", "b"}), 1, kOtherProgram);
+  // Without it nothing can be started.
+  fs::remove(trees.folder() / "b/tools/sim.sh");
+  trees.check(trees.gate({"../a", "."}, inside), 1, kOtherProgram);
+}
+
 }  // namespace
 }  // namespace parallax::test
