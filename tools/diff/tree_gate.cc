@@ -75,6 +75,7 @@ class Tree {
   struct Inputs {
     std::set<std::string> names;  // also of files that were looked for in vain
     std::string command_hash;     // over the files that a simulator's command names
+    std::string foreign;          // a file that is read from the other side instead of this one
     bool is_read = true;          // false: there may be more
   };
   Inputs inputs_of(const std::string& name) const {
@@ -97,7 +98,11 @@ class Tree {
     }
     out.is_read = out.is_read && !unread.has_errors();
     out.names.insert(name);
-    for (const auto& input : files.inputs()) out.names.insert(name_of(base::absolute_name(input)));
+    for (const auto& input : files.inputs()) {
+      const auto absolute = base::absolute_name(input);
+      out.names.insert(name_of(absolute));
+      if (out.foreign.empty() && is_foreign(absolute)) out.foreign = input;
+    }
     return out;
   }
 
@@ -114,6 +119,15 @@ class Tree {
       load.include_dirs.assign(folders.begin(), folders.end());
     }
     if (!paths.empty()) (void)compiler::load_model(paths, load, files, sink);
+  }
+
+  /// A `load` that is looked up from the current folder leads there for both sides.
+  bool is_foreign(const fs::path& path) const {
+    const auto& side = options_.commands;
+    if (!side || path.filename() == base::kRootMarker || !lies_there(path)) return false;
+    return !base::lies_below(path, side->root) &&
+           std::any_of(side->others.begin(), side->others.end(),
+                       [&](const auto& other) { return base::lies_below(path, other); });
   }
 
   std::string name_of(const fs::path& path) const {
@@ -326,6 +340,14 @@ base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
       continue;
     }
     const auto old_inputs = before.inputs_of(name);
+    if (!old_inputs.foreign.empty() || !new_inputs.foreign.empty()) {
+      out.rules.push_back(
+          {name, RuleOutcome::kUndecided,
+           fmt::format("{} is looked up from the current folder, for both sides the same: name it "
+                       "from the folder of the file that loads it",
+                       old_inputs.foreign.empty() ? new_inputs.foreign : old_inputs.foreign)});
+      continue;
+    }
     if (old_inputs.is_read && new_inputs.is_read &&
         old_inputs.command_hash == new_inputs.command_hash && unchanged.all(old_inputs.names) &&
         unchanged.all(new_inputs.names)) {

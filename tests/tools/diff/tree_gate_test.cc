@@ -148,6 +148,17 @@ TEST_CASE("folders without a scenario or manifest are compared by their models, 
   trees.check(trees.gate({"a", "b"}), 1, kLost);
 }
 
+TEST_CASE("what both sides would read from the current folder is not decided") {
+  const Trees trees;
+  trees.put("p/domain.e", kNames + std::string("load shared/shot.e\n"));
+  trees.put("shared/shot.e", kShot);
+  trees.commit("start");
+  trees.put("shared/shot.e", kDeadlier);
+  trees.commit("forget the condition");
+  trees.check(trees.gate({"HEAD^", "HEAD", "p"}), 1,
+              "domain.e: shared/shot.e is looked up from the current folder");
+}
+
 TEST_CASE("no temporary folder is named, and two calls say the same") {
   const Trees trees;
   trees.put("p/domain.e", kNames + std::string(kShot));
