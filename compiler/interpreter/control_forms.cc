@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -289,8 +290,16 @@ std::optional<std::string> tag_of(const FormCompiler& c, DatumId item) {
 /// (tagbody tag statement...): `(go tag)` leads to the tag; the value is nil.
 void form_tagbody(FormCompiler& c, DatumId form, FormItems items) {
   const auto scope = c.code.scope().size();
+  const auto statements = items.subspan(1);
+  // Nothing static ends a loop that `go` makes: its rounds are counted, as those of `loop`.
+  std::optional<std::uint32_t> counter;
+  if (std::any_of(statements.begin(), statements.end(),
+                  [&](DatumId item) { return tag_of(c, item).has_value(); })) {
+    c.code.constant(c.values.counter(0), form);
+    counter = c.code.height() - 1;
+  }
   std::map<std::string, std::uint32_t> exits;
-  for (const auto item : items.subspan(1)) {
+  for (const auto item : statements) {
     const auto tag = tag_of(c, item);
     if (!tag) continue;
     const auto [entry, added] = exits.emplace(*tag, c.code.open_exit());
@@ -299,15 +308,17 @@ void form_tagbody(FormCompiler& c, DatumId form, FormItems items) {
   }
   // A tag is reached with a value, as every exit is.
   c.nil(form);
-  for (const auto item : items.subspan(1)) {
+  for (const auto item : statements) {
     if (const auto tag = tag_of(c, item)) {
       c.code.set_exit(exits.at(*tag));
+      c.code.emit(PlanOp::kTick, *counter, 0, form);
     } else {
       c.compile(item);
       c.code.drop(item);
     }
   }
   c.code.drop(form);
+  if (counter) c.code.drop(form);
   c.nil(form);
   c.code.cut_scope(scope);
 }

@@ -220,11 +220,36 @@ TEST_CASE("traces: branches of a plan run in written order, or in every order") 
   CHECK(claim.out.starts_with("holds up to horizon 3 (not of every order, no proof)"));
   CHECK(claim.err.find("not explored: the other orders of `par` at par.lisp:1") !=
         std::string::npos);
+  // A compiled model could not tell that, so there is none.
+  const std::vector<std::string> compile = {"compile",    "domain.e", "start.e",
+                                            "--plan",     "par.lisp", "--bind",
+                                            "named.bind", "--until",  "HoldsAt(RobotIn(r2),time)",
+                                            "-o",         "par.cnf"};
+  const auto compiled = cli.parallax(compile);
+  CHECK(compiled.code == 2);
+  CHECK(compiled.err.find("the other orders of `par` are not explored") != std::string::npos);
+  auto interleaved = compile;
+  interleaved.push_back("--par=interleave");
+  CHECK(cli.parallax(interleaved).code == 0);
   arguments.push_back("--par=interleave");
   const auto both = json_of(cli, arguments);
   CHECK(!both.contains("every_order"));
   CHECK(both["traces"] == 4 + 4 * 4);
   CHECK(both["exploration"] == "all traces explored");
+}
+
+TEST_CASE("a loop of `go` around a question ends at its bound") {
+  const CliFixture cli;
+  cli.write("named.bind",
+            "query is-held () ok: Holding() @t\n"
+            "action picking-up () -> PickUp() ok: Holding() @t+1\n");
+  cli.write("again.lisp",
+            "(tagbody again (unless (holds '(is-held)) (go again)))\n"
+            "(perform (an action (type picking-up)))\n");
+  // Nothing is held at first, and asking changes nothing.
+  const auto found = json_of(cli, {"traces", "domain.e", "start.e", "--plan", "again.lisp",
+                                   "--bind", "named.bind", "--horizon", "3", "--limit=0"});
+  CHECK(found["exploration"] == "complete up to bound");
 }
 
 TEST_CASE("check warns of retries that cannot help in the model") {

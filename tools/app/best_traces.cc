@@ -32,10 +32,12 @@ std::optional<compiler::CompiledModel> BestTraces::model_of_best(
 }
 
 void BestTraces::certify(const CertifyOption& option, const std::vector<std::string>& models,
-                         const compiler::CompiledModel& model, Context& context) {
+                         const compiler::CompiledModel& model,
+                         const std::optional<compiler::PlanGraph>& plan, Context& context) {
   const auto better = runtime::with_bound(model, optimum_.values, BoundKind::kBetter);
   TraceCertifier certifier(option, models, better ? *better : model, context);
   if (!better) return certifier.decline("the objective has too many different sums");
+  certifier.note_gaps(plan, false);
   certifier.conclude(std::string(runtime::to_string(
                          model.has_constraints ? runtime::Exploration::kCompleteUpToBound
                                                : runtime::Exploration::kAllTracesExplored)),

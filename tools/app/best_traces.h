@@ -23,7 +23,8 @@ class BestTraces {
 
   /// Makes and checks a proof that no trace of `model` is better, and keeps the verdict.
   void certify(const CertifyOption& option, const std::vector<std::string>& models,
-               const compiler::CompiledModel& model, Context& context);
+               const compiler::CompiledModel& model, const std::optional<compiler::PlanGraph>& plan,
+               Context& context);
   /// Takes over the verdict on the complete list of best traces: then there is no better one
   /// either.
   void adopt(const TraceCertifier& certifier) { verdict_ = certifier.verdict(); }

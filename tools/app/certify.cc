@@ -88,9 +88,10 @@ void TraceCertifier::rest_on_symmetry() {
   if (!files_ && verdict_ != kByParts) verdict_ = kBySymmetry;
 }
 
-void TraceCertifier::note_gaps(const std::optional<compiler::PlanGraph>& plan) {
+void TraceCertifier::note_gaps(const std::optional<compiler::PlanGraph>& plan, bool tells) {
   if (!plan || plan->gaps.empty()) return;
   verdict_ = kByParts;
+  if (!tells) return;
   for (const auto& gap : plan->gaps) {
     context_.remark(
         fmt::format("not explored: {} at {}", gap.text, context_.files().place(gap.source)));

@@ -60,8 +60,8 @@ class TraceCertifier {
   bool refuted() const { return verdict_ == "proof not accepted"; }
   /// Records that the claim has no proof: it rests on an argument by symmetry.
   void rest_on_symmetry();
-  /// Records that the claim has no proof if the plan has gaps, and says which.
-  void note_gaps(const std::optional<compiler::PlanGraph>& plan);
+  /// Records that the claim has no proof if the plan has gaps, and says which unless that was said.
+  void note_gaps(const std::optional<compiler::PlanGraph>& plan, bool tells = true);
   /// `no proof`, `not of every order, no proof`, `symmetry, not proof checked`, `proof checked`,
   /// `proof not accepted` or `proof not checked`.
   const std::string& verdict() const { return verdict_; }

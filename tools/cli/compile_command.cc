@@ -98,6 +98,15 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
     sink.error_about(codes::kUsage, "--best", "the model has no `minimize` statement");
     return 0;
   }
+  if (options.emit == "cnf" && compilation->plan && !compilation->plan->gaps.empty()) {
+    const auto& gap = compilation->plan->gaps.front();
+    sink.error(codes::kUsage, gap.source,
+               fmt::format("{} are not explored, which a compiled model does not tell: what is "
+                           "claimed of it would claim "
+                           "too much; --par=interleave explores the orders of branches",
+                           gap.text));
+    return 0;
+  }
   report_costs(options, *compilation, invocation);
   compiler::map_paths(compilation->model, paths);
   const auto& model = compilation->model;

@@ -118,7 +118,13 @@ std::optional<std::vector<std::int64_t>> ProofTrace::states() {
   }
   for (std::size_t sample = 1; sample <= kMostStates; ++sample) {
     const auto state = starts_->state_of(static_cast<std::int64_t>(sample), true);
-    if (!state || !*state) return std::nullopt;
+    if (!state) return std::nullopt;
+    if (!*state) {
+      // Stopped; or hardly a candidate leads to these events: then those that were found are
+      // proved.
+      if (!starts_->ran_out(static_cast<std::int64_t>(sample))) return std::nullopt;
+      break;
+    }
     if (std::find(out.begin(), out.end(), **state) == out.end()) out.push_back(**state);
   }
   return out;

@@ -277,7 +277,8 @@ int list_compiled(const TracesOptions& options, const compiler::Compilation& com
   const auto prove_optimum = [&] {
     if (best == nullptr || !best->optimum().witness || !certifier->is_asked()) return;
     certifier.emplace(not_asked, options.model.models, model, invocation);
-    best->certify(options.certify, options.model.models, *all, invocation);
+    certifier->note_gaps(compilation.plan, false);
+    best->certify(options.certify, options.model.models, *all, compilation.plan, invocation);
   };
   if (options.count && !options.check && !model.has_constraints) {
     prove_optimum();
@@ -342,7 +343,7 @@ int list_witness(const TracesOptions& options, const compiler::Compilation& comp
   const bool proved = optimum.proved();
   if (proved) {
     if (!options.certify.file.empty()) {
-      best.certify(options.certify, options.model.models, model, invocation);
+      best.certify(options.certify, options.model.models, model, compilation.plan, invocation);
     } else {
       invocation.answered();
     }
