@@ -87,6 +87,7 @@ TEST_CASE("a scenario names a plan folder or a list of files; all of them count 
     CHECK_FALSE(contains(cli.parallax({"replay", "r", "--sample", "1.1"}).err, "now it is "));
     const auto plan = cli.read("robot_plans/z_plans.lisp");
     cli.write("robot_plans/z_plans.lisp", plan + "; changed\n");
+    std::filesystem::remove(cli.folder() / "r/inputs.json");  // else the kept texts are repeated
     const auto replayed = cli.parallax({"replay", "r", "--sample", "1.1"});
     CHECK(replayed.code != 0);
     CHECK(contains(replayed.err, "now it is "));

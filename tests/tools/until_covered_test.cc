@@ -243,9 +243,9 @@ TEST_CASE("until covered, open loop: every trace is simulated, whatever the firs
             "include: common.yaml\nsimulator: {model: unparks.e}\nmodel: [any.e, shut.e]\n"
             "plan: plan.lisp\nhorizon: 2\nconstraints: \"Happens(OpenDrawer(top),time-1)\"\n");
   cli.write("two/plan.lisp",
-            "(def-cram-function go ()\n"
+            "(def-cram-function act ()\n"
             "  (unless (holds '(parked)) (perform (an action (type parking-arms))))\n"
-            "  (perform (an action (type opening) (object (an object (name top))))))\n(go)\n");
+            "  (perform (an action (type opening) (object (an object (name top))))))\n(act)\n");
   const auto first = json_of(cli, {"run", "two/own.yaml", "--out", "first"}, 1);
   CHECK(first.at("iterations") == 1);
   const auto all = json_of(cli, {"run", "two/own.yaml", "--until-covered", "--out", "all"}, 1);
