@@ -86,7 +86,7 @@ TEST_CASE("other things of other names are no renaming, unless that is said") {
   CHECK(cli.parallax({"diff", "old.e", "new.e", "--rename", "Tom=Kim"}).code == 2);
   CHECK(cli.parallax({"diff", "old.e", "new.e", "--rename", "Bob"}).code == 2);
   // Two names would become one: that of the old model stays, or two rules say the same.
-  cli.write("two.e", kTill + "person Kim\nHoldsAt(Paid(Kim),2).\n");
+  cli.write("two.e", std::string(kTill) + "person Kim\nHoldsAt(Paid(Kim),2).\n");
   CHECK(cli.parallax({"diff", "two.e", "new.e", "--rename", "Bob=Kim"}).code == 2);
   CHECK(
       cli.parallax({"diff", "two.e", "new.e", "--rename", "Bob=Kim", "--rename", "Kim=Kim"}).code ==
