@@ -70,7 +70,7 @@ void ask_controller(const ProofWorld& world, const harness::TestCertificate& tes
 }
 
 Row measure(std::uint64_t number, std::int64_t samples, std::int64_t engine,
-            const harness::ProofLimits& limits) {
+            const harness::SubdivisionLimits& limits) {
   const ProofWorld world = random_drive(number);
   const auto layout = harness::lay_out(world.spec);
   const auto actions =
@@ -108,7 +108,7 @@ double median(std::vector<double> values) {
 }
 
 int run(std::uint64_t worlds, std::int64_t samples, std::int64_t engine, std::int64_t boxes) {
-  harness::ProofLimits limits;
+  harness::SubdivisionLimits limits;
   limits.boxes = boxes;
   std::vector<double> decided, mixed, seconds;
   Row all;
