@@ -34,6 +34,15 @@ BuiltinResult next(const BuiltinCall& c) {
   return BuiltinFailure{BuiltinError::kValue, "the list has fewer parts than the pattern"};
 }
 
+/// (par-loop-list list): the list, which must have an element.
+BuiltinResult nonempty(const BuiltinCall& c) {
+  const auto kind = c.values.kind(c.args[0]);
+  if (kind == ValueKind::kCons) return c.args[0];
+  if (kind != ValueKind::kNil) return c.wrong(0, "a list");
+  return BuiltinFailure{BuiltinError::kValue,
+                        "the list is empty, and nothing runs; guard it with `when`"};
+}
+
 BuiltinResult given(const BuiltinCall& c) {
   return c.values.boolean(c.values.kind(c.args[0]) != ValueKind::kNotGiven);
 }
@@ -84,6 +93,7 @@ BuiltinResult getf(const BuiltinCall& c) {
 constexpr BuiltinEntry kPatternTable[] = {
     {{"%expect-length", 2, 2}, expect_length},
     {{"%next", 1, 1}, next},
+    {{"par-loop-list", 1, 1}, nonempty},
     {{"%given", 1, 1}, given},
     {{"%argument", 2, 2}, argument},
     {{"%expect-keys", 2, 2}, expect_keys},

@@ -243,7 +243,7 @@ constexpr std::string_view kText = R"LISP(
     `(labels ((,branch (,left)
                 (par (let ((,(first head) (car ,left))) (seq ,@body))
                      (when (cdr ,left) (,branch (cdr ,left))))))
-       (,branch ,(second head)))))
+       (,branch (par-loop-list ,(second head))))))
 
 (defmacro with-gensyms (names &body body)
   `(let ,(mapcar (lambda (name)

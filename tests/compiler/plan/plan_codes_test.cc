@@ -46,6 +46,8 @@ const Case kCases[] = {
     {"(destructuring-bind (a b) '(1) a)", "CPL008",
      "`destructuring-bind`: the pattern has 2 parts, the list 1"},
     {"(par)", "CPL003", "malformed `par`: without branches it waits for nothing and fails"},
+    {"(par-loop (x (list)) x)", "CPL008",
+     "`par-loop-list`: the list is empty, and nothing runs; guard it with `when`"},
     {"(make-quaternion 0 0 0 0)", "CPL008", "`make-quaternion`: the quaternion has no direction"},
     {"(holds 'f)", "CPL008", "`holds`: expected a quoted fluent such as '(holding left box)"},
     {"(performe (a motion (type going)))", "CPL010", "no form or function `performe`"},
