@@ -16,12 +16,11 @@
 #include "harness/report/report.h"
 #include "harness/report/report_words.h"
 #include "harness/report/standing.h"
+#include "harness/report/start_lines.h"
 #include "harness/report/text_layout.h"
 
 namespace parallax::harness {
 namespace {
-
-constexpr std::size_t kLabelEnd = 15;  // column at which what stands beside a label begins
 
 class TextReport {
  public:
@@ -39,10 +38,7 @@ class TextReport {
   std::string verdict(CampaignVerdict verdict) const { return verdict_word(verdict, style_.color); }
 
   void line(std::string_view label, std::string_view text, std::size_t indent = 2) {
-    const auto end = std::max(kLabelEnd, indent + label.size() + 1);
-    auto first = std::string(indent, ' ') + std::string(label);
-    first.resize(end, ' ');
-    out_ += wrapped(first, text, end);
+    out_ += labelled(label, text, indent);
   }
 
   void head() {
@@ -95,17 +91,17 @@ class TextReport {
   void one_trace(const TraceResult& trace) {
     if (trace.loop) {
       out_ += fmt::format("\nexecutions: {}\n", verdict(trace.verdict));
-      paths(*trace.loop);
+      out_ += execution_paths(*trace.loop);
     } else {
       out_ += fmt::format("\ntrace {}: {}\n", trace.trace->number, verdict(trace.verdict));
       events(trace);
-      start(trace);
+      out_ += start_lines(trace);
     }
     if (!trace.starts.is_single()) {
-      initial_states(trace.loop ? "tried" : "start states", trace.starts);
+      out_ += initial_state_lines(trace.loop ? "tried" : "start states", trace.starts);
     }
     if (trace.search) line("searched", search_text(*trace.search, trace.trace->number));
-    if (trace.law) law(*trace.law);
+    if (trace.law) out_ += law_lines(*trace.law);
     auto runs = fmt::format("{} ({} clean", trace.simulations, trace.clean);
     if (trace.admitted > 0) {
       runs += fmt::format(", {} of them otherwise, as the model admits", trace.admitted);
@@ -145,103 +141,9 @@ class TextReport {
     for (std::size_t i = 0; i < trace.trace->event_count(); ++i) {
       rows.push_back({fmt::format("{}", i), trace.trace->event(i), trace.trace->plan[i].source});
     }
-    auto text = table(rows, kLabelEnd);
+    auto text = table(rows, kReportLabels);
     text.replace(0, 8, "  events");
     out_ += text;
-  }
-
-  /// Describes the subject of the claim: the discrete start and the continuous states that it
-  /// stands for.
-  void start(const TraceResult& trace) {
-    if (const auto holds = trace.trace->holds(0); !holds.empty()) {
-      line("start state", fmt::format("{}", fmt::join(holds, ", ")));
-    }
-    std::vector<std::vector<std::string>> rows;
-    for (const auto& [variable, interval] : trace.start_region) {
-      // A world that is a model has the fluents themselves for variables.
-      if (trace.trace->symbols->fluent(variable)) continue;
-      rows.push_back({variable, interval.lower == interval.upper
-                                    ? fmt::format("{}", interval.lower)
-                                    : fmt::format("{} to {}", interval.lower, interval.upper)});
-    }
-    if (rows.empty()) return;
-    constexpr std::string_view kLabel = "  start region";
-    out_ += table(rows, kLabelEnd).replace(0, kLabel.size(), kLabel);
-    if (!trace.left_out.empty()) line("left out", trace.left_out + ", where no start is drawn");
-    start_shares(trace);
-  }
-
-  /// The other initial states, and what came of each.
-  void initial_states(std::string_view label, const StartResult& starts) {
-    constexpr std::size_t kMostRows = 24;
-    line(label, tried_text(starts));
-    std::vector<std::vector<std::string>> rows;
-    for (const auto& [number, counts] : starts.states) {
-      if (rows.size() == kMostRows) break;
-      rows.push_back({fmt::format("{}", number),
-                      fmt::format("{} clean, {} lost, {} not", counts.clean, counts.lost,
-                                  counts.discrepancies),
-                      counts.text});
-    }
-    if (rows.empty()) return;
-    out_ += table(rows, kLabelEnd);
-    if (starts.states.size() > rows.size()) {
-      line("", fmt::format("and {} more", starts.states.size() - rows.size()));
-    }
-  }
-
-  /// By which law, and what its conditions refused.
-  void law(const LawResult& law) {
-    line("start law", law.text());
-    if (const auto refused = law.refused_text(); !refused.empty()) line("refused", refused);
-  }
-
-  /// How much of a cell the starts are drawn from, where that is not all of it: what is claimed is
-  /// about no more.
-  void start_shares(const TraceResult& trace) {
-    std::vector<std::vector<std::string>> rows;
-    for (const StartShare& share : trace.start_shares) {
-      if (share.share == 1.0 && share.fixed.empty()) continue;  // the whole cell
-      std::vector<std::string> parts;
-      for (const auto& axis : share.axes) {
-        if (axis.drawn == axis.whole) continue;
-        parts.push_back(fmt::format("{} {:.4g} of {:.4g}", axis.axis, axis.drawn, axis.whole));
-      }
-      if (!share.fixed.empty())
-        parts.push_back("fixed " + fmt::format("{}", fmt::join(share.fixed, " ")));
-      rows.push_back({fmt::format("{} in {}", share.body, share.region), percent_down(share.share),
-                      fmt::format("{}", fmt::join(parts, ", "))});
-    }
-    if (rows.empty()) return;
-    constexpr std::string_view kLabel = "  of the cells";
-    out_ += table(rows, kLabelEnd).replace(0, kLabel.size(), kLabel);
-  }
-
-  /// Where executions begin, and which ways they went.
-  void paths(const LoopResult& loop) {
-    const auto guided = loop.guided
-                            ? fmt::format(", but in {} chosen",
-                                          base::counted(*loop.guided, "execution", "executions"))
-                            : std::string();
-    line("start states",
-         fmt::format("{}, each {}{}", loop.initial_states,
-                     loop.has_weights ? "as likely as its weight" : "equally likely", guided));
-    constexpr std::size_t kMaxPaths = 5;
-    for (std::size_t i = 0; i < loop.paths.size() && i < kMaxPaths; ++i) {
-      const auto& path = loop.paths[i];
-      std::vector<std::string> steps;
-      for (std::size_t t = 0; t < path.events.size(); ++t) {
-        const bool ok = path.outcomes[t] == "ok";
-        steps.push_back(ok ? path.events[t]
-                           : fmt::format("{} ({})", path.events[t], path.outcomes[t]));
-      }
-      line("path",
-           fmt::format("{}, such as 1.{}: {}; {}", base::counted(path.runs, "run", "runs"),
-                       path.example, fmt::join(steps, ", "), end_of(path.end, path.detail)));
-    }
-    if (loop.paths.size() > kMaxPaths) {
-      line("path", fmt::format("and {} others", loop.paths.size() - kMaxPaths));
-    }
   }
 
   void causes(const LoopResult& loop) {
@@ -398,7 +300,7 @@ class TextReport {
 
   /// Not wrapped: the command is to be copied.
   void replay(const Discrepancy& found) {
-    out_ += fmt::format("    {:<{}}{}\n", "replay", kLabelEnd - 4,
+    out_ += fmt::format("    {:<{}}{}\n", "replay", kReportLabels - 4,
                         base::printable(replay_command(result_.replay_folder, found)));
   }
 

@@ -56,6 +56,13 @@ std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t
   return out;
 }
 
+std::string labelled(std::string_view label, std::string_view text, std::size_t indent) {
+  const auto end = std::max(kReportLabels, indent + label.size() + 1);
+  auto first = std::string(indent, ' ') + std::string(label);
+  first.resize(end, ' ');
+  return wrapped(first, text, end);
+}
+
 std::string shell_word(const std::string& text) {
   const bool plain =
       !text.empty() && text.front() != '-' && std::all_of(text.begin(), text.end(), [](char c) {

@@ -17,6 +17,13 @@ std::string wrapped(std::string_view first, std::string_view text, std::size_t i
 /// Columns padded to their widest cell, two blanks between them, no blanks at the ends of lines.
 std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t indent);
 
+/// Column at which the text beside a label begins.
+inline constexpr std::size_t kReportLabels = 15;
+
+/// A line of a report: `indent` blanks, the label, and the text from kReportLabels on, wrapped. A
+/// label that is longer pushes the text to the right.
+std::string labelled(std::string_view label, std::string_view text, std::size_t indent = 2);
+
 /// `text` as one word of a POSIX shell.
 std::string shell_word(const std::string& text);
 
