@@ -72,14 +72,16 @@ std::array<std::uint8_t, 32> sha256(std::string_view bytes) {
   return out;
 }
 
-std::string sha256_hex(std::string_view bytes) {
+std::string hex_digits(std::span<const std::uint8_t> bytes) {
   static constexpr std::string_view kDigits = "0123456789abcdef";
   std::string out;
-  for (const auto byte : sha256(bytes)) {
+  for (const auto byte : bytes) {
     out += kDigits[byte >> 4U];
     out += kDigits[byte & 15U];
   }
   return out;
 }
+
+std::string sha256_hex(std::string_view bytes) { return hex_digits(sha256(bytes)); }
 
 }  // namespace parallax::base

@@ -97,8 +97,8 @@ class PlanCompiler {
     }
   }
 
-  /// What the run may come to: from the entry, or from the forms at top level, or else from the
-  /// last function.
+  /// Marks everything that the run can reach: from the entry, else from the forms at top level,
+  /// else from the last function.
   void find_reached(const std::optional<std::string>& entry) {
     std::set<std::string, std::less<>> macros;
     std::vector<DatumId> others;

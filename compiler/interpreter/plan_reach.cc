@@ -1,5 +1,5 @@
-// What a run can come to, by the names in the text: a function is reached if a reached text names
-// it, as a call or as data. Names that are put together while the plan runs are not seen; a call
+// Reachability by names in the text: a function is reached if a reached text names it, as a call
+// or as data. Names that are put together while the plan runs are not seen; a call
 // of such a function is reported where it happens. Cost: linear in the text, times the rounds in
 // which further rules begin to count.
 #include "compiler/interpreter/plan_reach.h"

@@ -49,7 +49,7 @@ class EventEdits {
         out_.push_back(edit);
       }
       // The condition may be one of these effects and not of others, which came as the model says.
-      // Where the event never did what it should, any condition would explain that.
+      // If the event failed in every run, any condition would explain the failures.
       const bool is_part = differing.size() > 1 && differing.size() < axioms.size();
       if (is_part && subject_.relevance.in_some_success(literal, names, event, names)) {
         edit.kind = Edit::Kind::kNarrowEvent;

@@ -50,7 +50,7 @@ class LoopStream {
   std::int64_t initial_states() const { return std::ssize(samples_->starts()); }
   bool has_weights() const { return has_weights_; }
   const LoopStart& start_of(const SampleRecord& record) const { return samples_->start_of(record); }
-  /// What tells an initial state from the others.
+  /// The fluents that distinguish an initial state from the others, as text.
   std::string text(std::int64_t state) const;
   std::int64_t next_sample() const { return next_; }  // from 1
   /// Lets the workers simulate all samples up to this one.

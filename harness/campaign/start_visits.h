@@ -17,8 +17,8 @@ class VisitRounds {
   /// they are numbered from 1 to this; 0: none can be chosen.
   VisitRounds(const StartResult& starts, std::int64_t states) : starts_(starts), states_(states) {}
 
-  /// The states of the next round, where the limit admits so many further simulations. Empty: there
-  /// is no further round.
+  /// The states of the next round. `room`: how many further simulations the limit admits. Empty if
+  /// there is no further round.
   std::vector<std::int64_t> next(std::int64_t room);
 
  private:

@@ -43,8 +43,8 @@ struct InsideBinding {
 
   /// The region that the fluent names; null if there is none of this name.
   const Region* region_of(const GroundFluent& fluent, const RegionMap& regions) const;
-  /// Where the body is, in the frame of the region that the fluent names; none: there is no such
-  /// region, or the state does not say all that is asked for.
+  /// The body's position in the frame of the region that the fluent names. None if there is no such
+  /// region, or if the state lacks a variable.
   std::optional<Point> point_of(const GroundFluent& fluent, const State& state,
                                 const RegionMap& regions) const;
   /// Do `unless` and `only_if` let the fluent hold?

@@ -6,7 +6,7 @@
 
 namespace parallax::harness {
 
-/// What a state says of a fluent, as numbers beside the bounds that decide:
+/// The values that decide a fluent in a state, beside their bounds:
 /// "robot.x = 0.313 m, 87 mm below [0.4, 0.8]", or, of a fluent that holds, "robot.x = 0.413 m
 /// within [0.4, 0.8]" on the axis that is nearest to its border. Metres and radians.
 /// Empty: the fluent is not compared, or the state lacks its variables.

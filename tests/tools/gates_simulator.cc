@@ -1,6 +1,6 @@
-// A simulator of gates and a way through them: gates_simulator LOST WRONG. Where so many gates are
-// shut at the start, going is lost (LOST), or does not get through (WRONG); a number that no start
-// has means never. Shares no code with the harness.
+// A simulator of gates and a way through them: gates_simulator LOST WRONG. An action is lost if
+// LOST gates are shut at the start, and does not get through if WRONG gates are; a number that no
+// start has means never. Shares no code with the harness.
 
 #include <cstdlib>
 #include <iostream>

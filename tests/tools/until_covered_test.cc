@@ -206,7 +206,7 @@ TEST_CASE("until covered: guided starts show what drawn ones hardly do; bounds a
       json_of(cli, {"run", "lamps.yaml", "--out", "uniform", "--max-runs", most}, 4);
   CHECK(cover_of(uniform).at("end") == "rarer than epsilon");
   CHECK(cover_of(uniform).at("executions") == needed(17));
-  // Where there is room, the state is visited, which shows it.
+  // With the usual limit of runs the state is visited, which shows it.
   const auto visited = json_of(cli, {"run", "lamps.yaml", "--out", "visited"});
   CHECK(cover_of(visited).at("end") == "all shown");
   CHECK(cover_of(visited).at("executions") == needed(17));

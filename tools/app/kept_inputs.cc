@@ -6,8 +6,10 @@
 
 #include "tools/app/kept_inputs.h"
 
+#include <cstdint>
 #include <set>
 #include <system_error>
+#include <vector>
 
 #include "compiler/base/file_io.h"
 #include "compiler/base/file_names.h"
@@ -34,17 +36,6 @@ fs::path root_of(const fs::path& scenario) {
     if (base::is_marked_root(at)) return at;
   }
   return folder;
-}
-
-std::string to_hex(std::string_view bytes) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string out;
-  for (const char c : bytes) {
-    const auto byte = static_cast<unsigned char>(c);
-    out += kDigits[byte >> 4U];
-    out += kDigits[byte & 15U];
-  }
-  return out;
 }
 
 std::optional<std::string> from_hex(std::string_view digits) {
@@ -125,7 +116,9 @@ std::string packed_inputs(const fs::path& scenario, const std::string& scenario_
     auto& entry = files[name.generic_string()];
     entry["sha256"] = base::sha256_hex(*content);
     const bool is_text = base::first_invalid_utf8(*content) == content->size();
-    entry[is_text ? "text" : "hex"] = is_text ? *content : to_hex(*content);
+    entry[is_text ? "text" : "hex"] =
+        is_text ? *content
+                : base::hex_digits(std::vector<std::uint8_t>(content->begin(), content->end()));
   }
   const Json json = {{"inputs", kFormat},
                      {"scenario", file.lexically_relative(root).generic_string()},

@@ -17,7 +17,7 @@ inline constexpr std::string_view kInputsName = "inputs.json";
 std::string packed_inputs(const std::filesystem::path& scenario, const std::string& scenario_hash,
                           const std::vector<std::string>& inputs);
 
-/// Where unpacked texts lie.
+/// The location of unpacked texts.
 struct UnpackedInputs {
   std::filesystem::path scenario;
   /// How the run called the folder that they were unpacked into; ends in no slash.

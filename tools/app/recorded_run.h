@@ -11,8 +11,8 @@ namespace parallax::tools {
 struct RunFolderOptions {
   std::string folder;
   std::string scenario;  // if the file was moved; empty: where the journal says
-  /// Where the project's files are not those of the run any more, those that the run kept
-  /// (kInputsName) take their place. False: for what changes the files.
+  /// Use the texts that the run kept (kInputsName) if the project's files have changed since. False
+  /// for commands that edit the project's files.
   bool may_use_kept = true;
 };
 

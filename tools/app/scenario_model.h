@@ -32,7 +32,7 @@ struct ScenarioModel {
   /// The world, where the simulator is a model.
   std::shared_ptr<const harness::SteppedModel> world = nullptr;
   std::string world_hash = {};  // over its texts
-  /// Where the texts lie that the run kept, if it was loaded from these; goes with the model.
+  /// Set if the model was loaded from texts that a run kept; owns their temporary folder.
   std::shared_ptr<const struct KeptTexts> kept = nullptr;
 };
 

@@ -62,7 +62,7 @@ class EnumeratedTraces final : public harness::TraceFeed {
   std::int64_t without_weight_ = 0;        // others, which are left out
   std::size_t states_without_weight_ = 0;  // of these
   bool weights_told_ = false;
-  /// What tells initial states apart, of traces that were asked about, by number.
+  /// The fluents that distinguish initial states, by the number of the trace.
   std::map<std::int64_t, std::vector<compiler::FluentId>> told_by_;
   std::unique_ptr<runtime::SolverSession> session_;
   std::unique_ptr<runtime::PlanEnumerator> enumerator_;

@@ -34,7 +34,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is not reported is `null`.
+/// `null` for a value that is not reported.
 std::string word(const std::string& text) { return text.empty() ? "null" : text; }
 template <typename T>
 std::string word(const std::optional<T>& number) {

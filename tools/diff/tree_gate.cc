@@ -358,9 +358,11 @@ base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
     std::move(found.begin(), found.end(), std::back_inserter(out.rules));
   }
   for (const auto& name : added) out.remarks.push_back(name + " is new");
-  out.remarks.push_back(
-      fmt::format("no file of {} changed",
-                  base::counted(untouched, "scenario or model", "scenarios and models")));
+  if (untouched > 0) {
+    out.remarks.push_back(
+        fmt::format("no file of {} changed",
+                    base::counted(untouched, "scenario or model", "scenarios and models")));
+  }
   return out;
 }
 

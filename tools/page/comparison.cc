@@ -261,7 +261,7 @@ std::string causes(const std::vector<PageData>& pages) {
                     table_of("Causes", "<th scope=\"col\">Cause</th>" + column_heads(pages), rows));
 }
 
-/// What changed in the scenarios, as `parallax diff` says it.
+/// The changes of the scenarios, as `parallax diff` words them.
 std::string changed(const std::vector<PageData>& pages, const std::vector<std::string>& changes) {
   constexpr std::size_t kMostBytes = 20'000;
   std::string out;

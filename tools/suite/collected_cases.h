@@ -9,7 +9,7 @@
 
 namespace parallax::tools {
 
-/// What a suite was asked to run.
+/// The selection of cases that a suite was asked to run.
 struct SuiteSelection {
   const std::vector<std::string>& paths;
   const std::string& only;
