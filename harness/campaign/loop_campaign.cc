@@ -70,7 +70,8 @@ class LoopCampaign {
     result_.journal_open = true;
     stream_.loop->initial_states = samples_.initial_states();
     stream_.loop->has_weights = samples_.has_weights();
-    stream_.starts.all = samples_.initial_states();
+    stream_.starts.unrealisable = samples_.unrealisable();
+    stream_.starts.all = samples_.initial_states() + std::ssize(samples_.unrealisable());
     stream_.starts.law = scenario_.initial;
     if (scenario_.until_covered && !watch_what_is_shown()) return finished(true);
     if (!samples_.continue_from(*journal_)) return sink_.already_reported();
@@ -123,7 +124,7 @@ class LoopCampaign {
   /// once each. These executions count for no claim.
   base::Result<End> visit_others() {
     auto& starts = stream_.starts;
-    VisitRounds rounds(starts, starts.is_single() ? 0 : *starts.all);
+    VisitRounds rounds(starts, starts.is_single() ? 0 : samples_.initial_states());
     for (;;) {
       const auto left = rounds.next(limit_.most - tally_.executions() - starts.visits);
       if (left.empty()) return End::kDecided;

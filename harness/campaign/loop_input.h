@@ -53,11 +53,18 @@ class ExecutablePlan {
   virtual std::vector<PlannedPerform> performs() const = 0;
 };
 
+/// An initial state of the model that no start of the world can be in.
+struct StateWithoutStart {
+  std::vector<compiler::FluentId> holds;
+  std::string reason;
+};
+
 /// The states that executions begin in.
 struct LoopStates {
   std::vector<std::vector<compiler::FluentId>> holds;  // in a fixed order
   /// Weights of the states in the draw, none of which is 0. Empty: each is equally likely.
   std::vector<double> weights;
+  std::vector<StateWithoutStart> without_start;  // besides; none if no state has a start
 };
 
 /// A model with a plan that is executed.
@@ -71,9 +78,9 @@ class LoopFeed {
   virtual runtime::Symbols symbols() const = 0;
   /// The performs of one execution that the model was compiled for.
   virtual std::int64_t max_performs() const = 0;
-  /// The states that the model can begin in, but for those that the scenario gives no weight, each
-  /// as the true ones of `fluents`. Reports that there are too many, or none, and what is wrong
-  /// with the weights; nothing if it was stopped.
+  /// The states that the model can begin in, but for those that the scenario gives no weight and
+  /// those that no start can be in, each as the true ones of `fluents`. Reports that there are too
+  /// many, or none, and what is wrong with the weights; nothing if it was stopped.
   virtual base::Result<std::optional<LoopStates>> initial_states(
       std::span<const compiler::FluentId> fluents) = 0;
   /// Returns the guide that chooses the starts of executions drawn from this seed; null: all are

@@ -61,6 +61,16 @@ base::Status check_performs(const Scenario& scenario, const ExecutablePlan& plan
   return base::Unit{};
 }
 
+void LoopStream::describe_unrealisable(const LoopStates& states) {
+  auto all = states.holds;
+  for (const auto& state : states.without_start) all.push_back(state.holds);
+  const auto common = common_fluents(all);
+  for (const auto& state : states.without_start) {
+    unrealisable_.push_back(
+        fmt::format("{}: {}", state_text(state.holds, common, *feed_.symbols()), state.reason));
+  }
+}
+
 base::Result<bool> LoopStream::prepare() {
   if (!check_performs(scenario_, feed_.plan(), sink_)) return sink_.already_reported();
   const auto& ground = bench_.fluents().ground();
@@ -69,6 +79,7 @@ base::Result<bool> LoopStream::prepare() {
   if (!*states) return false;
   std::vector<LoopStart> starts;
   has_weights_ = !(*states)->weights.empty();
+  describe_unrealisable(**states);
   common_ = common_fluents((*states)->holds);
   for (auto& holds : (*states)->holds) {
     auto state = start_state(feed_, std::move(holds));

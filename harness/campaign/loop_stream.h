@@ -39,7 +39,7 @@ class LoopStream {
                                                           std::vector<compiler::FluentId> holds);
 
   /// Call it before anything is simulated. Checks that every perform of the plan has a controller
-  /// that takes its arguments, and that every initial state has a start. False when stopped.
+  /// that takes its arguments, and that an initial state has a start. False when stopped.
   /// Reports what these checks report.
   base::Result<bool> prepare();
   /// Reports kForeignJournalLine for a start that is not that of its number.
@@ -48,6 +48,8 @@ class LoopStream {
   /// The maker of executions; valid after `prepare`.
   const std::shared_ptr<const LoopSamples>& samples() const { return samples_; }
   std::int64_t initial_states() const { return std::ssize(samples_->starts()); }
+  /// The initial states that no start can be in, each with the reason.
+  const std::vector<std::string>& unrealisable() const { return unrealisable_; }
   bool has_weights() const { return has_weights_; }
   const LoopStart& start_of(const SampleRecord& record) const { return samples_->start_of(record); }
   /// The fluents that distinguish an initial state from the others, as text.
@@ -73,6 +75,7 @@ class LoopStream {
   }
 
  private:
+  void describe_unrealisable(const LoopStates& states);
   void choose();
   const SampleRecord* recorded(std::int64_t sample, DrawPhase phase) const {
     return journal_->find(1, sample, phase);
@@ -86,6 +89,7 @@ class LoopStream {
   base::DiagnosticSink& sink_;
   const Journal* journal_ = nullptr;
   bool has_weights_ = false;
+  std::vector<std::string> unrealisable_;
   FluentSet common_;  // true in each of the initial states
   std::shared_ptr<const LoopSamples> samples_;
   StartGuide* guide_ = nullptr;

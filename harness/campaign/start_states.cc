@@ -105,10 +105,8 @@ base::Status StartStates::list() {
 
 /// Can a start of the world be in the state?
 bool StartStates::can_begin(const State& state) const {
-  base::DiagnosticSink unread;
-  return start_sampler(sources_.scenario, sources_.fluents.ground(),
-                       names_of(state, *trace_->symbols), unread)
-      .has_value();
+  return !why_no_start(sources_.scenario, sources_.fluents.ground(),
+                       names_of(state, *trace_->symbols));
 }
 
 void StartStates::leave_out_unrealisable() {
@@ -118,17 +116,14 @@ void StartStates::leave_out_unrealisable() {
   std::vector<std::string> reasons;
   const auto all = states_;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    base::DiagnosticSink unread;
-    const auto sampler = start_sampler(sources_.scenario, sources_.fluents.ground(),
-                                       names_of(all[i], *trace_->symbols), unread);
-    if (sampler) {
-      kept.push_back(all[i]);
-      if (!weights_.empty()) weights.push_back(weights_[i]);
+    const auto why = why_no_start(sources_.scenario, sources_.fluents.ground(),
+                                  names_of(all[i], *trace_->symbols));
+    if (why) {
+      reasons.push_back(fmt::format("{}: {}", text(static_cast<std::int64_t>(i) + 1), *why));
       continue;
     }
-    const auto said = unread.sorted();
-    reasons.push_back(fmt::format("{}: {}", text(static_cast<std::int64_t>(i) + 1),
-                                  said.empty() ? "no start" : said.front().message));
+    kept.push_back(all[i]);
+    if (!weights_.empty()) weights.push_back(weights_[i]);
   }
   if (kept.empty()) return;  // what is wrong with the first is reported when it is prepared
   states_ = std::move(kept);

@@ -68,6 +68,15 @@ base::Result<Sampler> start_sampler(const Scenario& scenario,
                        &scenario.law);
 }
 
+std::optional<std::string> why_no_start(const Scenario& scenario,
+                                        const std::vector<GroundFluent>& fluents,
+                                        const std::set<std::string>& true_at_start) {
+  base::DiagnosticSink unread;
+  if (start_sampler(scenario, fluents, true_at_start, unread)) return std::nullopt;
+  const auto said = unread.sorted();
+  return said.empty() ? "no start" : said.front().message;
+}
+
 TrialBench::TrialBench(const Scenario& scenario, TraceFeed& feed,
                        const SimulatorFactory& make_simulator, const TrialOptions& options,
                        std::function<void(const SampleRecord&)> finished,

@@ -50,6 +50,11 @@ base::Result<Sampler> start_sampler(const Scenario& scenario,
                                     const std::set<std::string>& true_at_start,
                                     base::DiagnosticSink& sink);
 
+/// Why no start of the world has this initial state, in a sentence; none: some start has it.
+std::optional<std::string> why_no_start(const Scenario& scenario,
+                                        const std::vector<GroundFluent>& fluents,
+                                        const std::set<std::string>& true_at_start);
+
 /// The shared state of the simulations of one command: workers with a simulator each, the info of
 /// that simulator, the model's fluents, and the count of consecutive losses, which goes on from
 /// trace to trace.

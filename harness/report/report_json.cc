@@ -190,6 +190,9 @@ OrderedJson json_of(const TraceResult& result, const std::vector<ComparedFluents
     out["initial_states"] = result.loop->initial_states;
     out["initial_states_tried"] = result.starts.tried;
     if (result.starts.visits > 0) out["initial_states_visits"] = result.starts.visits;
+    if (!result.starts.unrealisable.empty()) {
+      out["initial_states_without_start"] = result.starts.unrealisable;
+    }
     out["start_law"] = result.loop->has_weights ? "weights" : "uniform";
     out["unfinished"] = result.loop->unfinished;
     if (result.loop->guided) out["chosen_starts"] = *result.loop->guided;

@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
                 {"seeds", true},           {"determinism", "bitwise"}, {"time_step", 0.01},
                 {"params", Json::array()}, {"actions", Json::array()}};
     } else if (method == "reset") {
-      state = {{"There()", false}, {"Waved()", false}};
+      state = {{"There()", false}, {"Waved()", false}, {"Lit()", false}};
       shut = 0;
       for (const auto& [name, value] : request.at("params").at("state").items()) {
         state[name] = value == 1;

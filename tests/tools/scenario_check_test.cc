@@ -224,6 +224,19 @@ TEST_CASE(
   CHECK(run.err == said);
 }
 
+TEST_CASE("check tries starts of the other initial states too") {
+  const CliFixture cli;
+  // Beside the lane the box would lie in the base.
+  cli.write("domain.e", cli.read("domain.e") + "fluent Beside()\n");
+  cli.replace("common.yaml", "box.y: 0", "box.y: [-0.65, 0]\n    box.x: 1.5\n    robot.x: 1.5");
+  cli.replace("common.yaml", "Holding(): {flag: box.held}",
+              "Holding(): {flag: box.held}\n  Beside(): {start: box.y, up_to: -0.5}");
+  cli.replace("start.e", "RobotIn(r1)", "RobotIn(r2)");
+  CHECK(has(check(cli, 3), "error[E7105]: 100 starts in a row were invalid for sample 1"));
+  cli.write("scenario.yaml", cli.read("scenario.yaml") + "\ninitial: first\n");
+  check(cli, 0);
+}
+
 TEST_CASE("check of a scenario lints its model as check of the model does") {
   const CliFixture cli;
   cli.write("domain.e", cli.read("domain.e") + "fluent Lit()\n!HoldsAt(Lit(),0).\n");

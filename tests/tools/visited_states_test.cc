@@ -187,6 +187,40 @@ TEST_CASE("where the limit has no room for the others the run is inconclusive, a
   }
 }
 
+TEST_CASE("an initial state that no start can be is named, and keeps the verdict open") {
+  for (const std::string execution : {"open-loop", "closed-loop"}) {
+    CAPTURE(execution);
+    const Gates cli(2);
+    cli.simulated("gates.yaml", kNever, kNever, "execution: " + execution + "\n");
+    cli.write("wrong.e", cli.read("wrong.e") + "fluent Lit()\n");  // a lamp, off in each start
+    cli.replace("gates.yaml", "There(): {", "Lit(): {flag: \"Lit()\"}, There(): {");
+    const auto ran = cli.parallax(kRun);
+    CAPTURE(ran.out);
+    CAPTURE(ran.err);
+    CHECK(ran.code == 4);
+    CHECK(ran.out.find("no discrepancy found in 4 of 8 initial states") != std::string::npos);
+    const auto report = Json::parse(cli.read("out/report.json"));
+    const auto& trace = report.at("traces").at(0);
+    if (execution == "open-loop") {
+      const auto& states = trace.at("initial_states");
+      CHECK(states.at("all") == 8);
+      CHECK(states.at("tried") == 4);
+      CHECK(states.at("unrealisable").size() == 4);
+    } else {
+      CHECK(trace.at("initial_states") == 4);
+      CHECK(trace.at("initial_states_tried") == 4);
+      CHECK(trace.at("initial_states_without_start").size() == 4);
+    }
+    CHECK(cli.read("out/report.txt").find("no start realises the initial state with Lit()") !=
+          std::string::npos);
+    check_reproducible(cli, 4);
+    const auto checked = cli.parallax({"check", "gates.yaml"});
+    CAPTURE(checked.err);
+    CHECK(checked.code == 0);
+    CHECK(checked.err.find("W5311") != std::string::npos);
+  }
+}
+
 TEST_CASE("executions by weight: each state that has a weight is tried") {
   const Gates cli(6);
   const std::string rare =

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <set>
 #include <string>
 #include <utility>
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/contract.h"
 #include "compiler/base/suggest.h"
+#include "harness/campaign/trial.h"
 #include "tools/app/cover_items.h"
 #include "tools/app/start_guide.h"
 #include "tools/app/start_weights.h"
@@ -75,8 +77,27 @@ base::Result<std::optional<harness::LoopStates>> ClosedLoop::initial_states(
       out.weights.push_back(weights->weights[i]);
     }
   }
+  leave_out_states_without_start(out);
   states_ = out.holds;
   return std::optional(std::move(out));
+}
+
+void ClosedLoop::leave_out_states_without_start(harness::LoopStates& states) const {
+  const harness::ModelFluents fluents(*symbols_);
+  harness::LoopStates kept;
+  for (std::size_t i = 0; i < states.holds.size(); ++i) {
+    std::set<std::string> names;
+    for (const auto fluent : states.holds[i]) names.insert(symbols_->name(fluent));
+    auto why = harness::why_no_start(loaded_.scenario, fluents.ground(), names);
+    if (why) {
+      kept.without_start.push_back({states.holds[i], *std::move(why)});
+      continue;
+    }
+    kept.holds.push_back(states.holds[i]);
+    if (!states.weights.empty()) kept.weights.push_back(states.weights[i]);
+  }
+  if (kept.holds.empty()) return;  // what is wrong with the first is reported when it is prepared
+  states = std::move(kept);
 }
 
 harness::StartGuide* ClosedLoop::guide(std::uint64_t seed) {

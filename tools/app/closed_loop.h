@@ -44,6 +44,7 @@ class ClosedLoop final : public harness::LoopFeed {
 
  private:
   ClosedLoop(const ScenarioModel& loaded, Context& context);
+  void leave_out_states_without_start(harness::LoopStates& states) const;
   const PlanCoverage& plan_coverage();
 
   const ScenarioModel& loaded_;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -13,6 +14,7 @@
 #include "compiler/artifact/symbol_table.h"
 #include "compiler/base/codes/scenarios.h"
 #include "harness/campaign/loop_stream.h"
+#include "harness/campaign/start_draw.h"
 #include "harness/campaign/trace_input.h"
 #include "harness/campaign/trial.h"
 #include "harness/discrete/model_simulator.h"
@@ -26,6 +28,17 @@ using compiler::Literal;
 
 // Limit on the assignments of the compared fluents that are examined.
 constexpr std::size_t kMostStates = 200;
+
+/// The fluents in which the states differ, ascending.
+std::vector<FluentId> differing_fluents(std::span<const std::vector<FluentId>> states) {
+  std::set<FluentId> some;
+  for (const auto& state : states) some.insert(state.begin(), state.end());
+  const auto common = harness::common_fluents(states);
+  std::vector<FluentId> out;
+  std::set_difference(some.begin(), some.end(), common.begin(), common.end(),
+                      std::back_inserter(out));
+  return out;
+}
 
 /// Finds ignored fluents in which two initial states differ that agree on all compared ones.
 class OpenFluents {
@@ -127,47 +140,61 @@ void report_open_starts(const ScenarioModel& loaded, Context& context) {
   }
 }
 
-base::Result<harness::CampaignTrace> UnrealisableStarts::look(harness::CampaignTrace trace,
-                                                              harness::TraceFeed& traces) {
+void UnrealisableStarts::note(const std::vector<FluentId>& state, std::span<const FluentId> open,
+                              const compiler::SymbolTable& symbols,
+                              const std::optional<std::string>& why) {
+  std::set<Value> values;
+  for (const auto fluent : open) {
+    values.insert({symbols.name(fluent), runtime::contains(state, fluent)});
+  }
+  if (why) {
+    found_.push_back({std::move(values), *why});
+  } else {
+    realised_.merge(values);
+  }
+}
+
+void UnrealisableStarts::look(const harness::LoopStates& states,
+                              const compiler::SymbolTable& symbols) {
+  if (states.without_start.empty()) return;
+  auto all = states.holds;
+  for (const auto& state : states.without_start) all.push_back(state.holds);
+  const auto open = differing_fluents(all);
+  for (const auto& state : states.holds) note(state, open, symbols, std::nullopt);
+  for (const auto& state : states.without_start) note(state.holds, open, symbols, state.reason);
+}
+
+base::Result<std::vector<harness::CampaignTrace>> UnrealisableStarts::look(
+    harness::CampaignTrace trace, harness::TraceFeed& traces, std::size_t most) {
   const auto& scenario = loaded_.scenario;
   if (trace.other_initial_states != base::Known::kYes ||
       scenario.initial == harness::Initial::kFirst) {
-    return trace;
+    return std::vector{std::move(trace)};
   }
   auto compared = harness::compared_fluents(scenario, fluents_);
   std::sort(compared.begin(), compared.end());
   const auto starts = traces.starts(trace, compared);
   if (!starts) return context_.sink().already_reported();
-  if (!*starts || (*starts)->more) return trace;
+  if (!*starts || (*starts)->more) return std::vector{std::move(trace)};
   const auto& states = (*starts)->states;
-  std::vector<FluentId> open;
-  for (const auto fluent : compared) {
-    const auto count = std::count_if(states.begin(), states.end(), [&](const auto& state) {
-      return runtime::contains(state, fluent);
-    });
-    if (count > 0 && count < std::ssize(states)) open.push_back(fluent);
-  }
-  const std::vector<FluentId>* first = nullptr;
+  const auto open = differing_fluents(states);
+  std::vector<harness::CampaignTrace> out;
   for (const auto& state : states) {
     std::set<std::string> names;
     for (const auto fluent : state) names.insert(trace.symbols->name(fluent));
-    std::set<Value> values;
-    for (const auto fluent : open) {
-      values.insert({trace.symbols->name(fluent), runtime::contains(state, fluent)});
-    }
-    base::DiagnosticSink unread;
-    if (harness::start_sampler(scenario, fluents_.ground(), names, unread)) {
-      if (first == nullptr) first = &state;
-      realised_.merge(values);
+    const auto why = harness::why_no_start(scenario, fluents_.ground(), names);
+    note(state, open, *trace.symbols, why);
+    if (why || out.size() >= most) continue;
+    if (&state == &states.front()) {
+      out.push_back(trace);
       continue;
     }
-    const auto said = unread.sorted();
-    found_.push_back({std::move(values), said.empty() ? "it has no start" : said.front().message});
+    auto found = traces.from(trace, compared, state);
+    if (!found) return context_.sink().already_reported();
+    if (found->second) out.push_back(*std::move(found->second));
   }
-  if (first == nullptr || first == &states.front()) return trace;
-  auto found = traces.from(trace, compared, *first);
-  if (!found) return context_.sink().already_reported();
-  return found->second ? *std::move(found->second) : std::move(trace);
+  if (out.empty()) out.push_back(std::move(trace));
+  return out;
 }
 
 void UnrealisableStarts::report() const {

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <compare>
+#include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "compiler/artifact/symbol_table.h"
+#include "harness/campaign/loop_input.h"
 #include "harness/campaign/trace_input.h"
 #include "tools/app/scenario_model.h"
 
@@ -23,11 +27,14 @@ class UnrealisableStarts {
                      Context& context)
       : loaded_(loaded), fluents_(fluents), context_(context) {}
 
-  /// Looks at the initial states of a trace that `traces` gave, and returns it from the first one
-  /// that a start can be; as it is where none can, or the search was stopped. Fails as
-  /// TraceFeed::starts does.
-  base::Result<harness::CampaignTrace> look(harness::CampaignTrace trace,
-                                            harness::TraceFeed& traces);
+  /// Looks at the initial states of a trace that `traces` gave, and returns it from the first ones
+  /// that a start can be, `most` of them; as it is where none can, or the search was stopped. Fails
+  /// as TraceFeed::starts does.
+  base::Result<std::vector<harness::CampaignTrace>> look(harness::CampaignTrace trace,
+                                                         harness::TraceFeed& traces,
+                                                         std::size_t most);
+  /// Looks at the initial states of executions.
+  void look(const harness::LoopStates& states, const compiler::SymbolTable& symbols);
   /// Warns of fluents that every start has with one value though the model leaves them open
   /// (kFixedStart), and of the other states that were found (kUnrealisableStart), the first few.
   void report() const;
@@ -42,6 +49,10 @@ class UnrealisableStarts {
     std::set<Value> values;  // of the fluents in which initial states differ
     std::string reason;
   };
+
+  /// Keeps the values of the `open` fluents in the state; `why`: no start of the world can be it.
+  void note(const std::vector<compiler::FluentId>& state, std::span<const compiler::FluentId> open,
+            const compiler::SymbolTable& symbols, const std::optional<std::string>& why);
 
   const ScenarioModel& loaded_;
   const harness::ModelFluents& fluents_;

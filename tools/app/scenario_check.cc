@@ -102,6 +102,7 @@ using compiler::TermKind;
 
 // The first traces of a campaign, with the seed that it has where none is given.
 constexpr std::int64_t kTracesTried = 10;
+constexpr std::size_t kStatesTried = 10;  // initial states of each
 constexpr std::uint64_t kSeedTried = 1;
 
 /// The fluents that a formula names.
@@ -260,13 +261,16 @@ void check_before_executions(const ScenarioModel& loaded, Context& context) {
   const harness::ModelFluents fluents(*(*loop)->symbols());
   auto states = (*loop)->initial_states(harness::compared_fluents(scenario, fluents));
   if (!states || !*states) return;
+  UnrealisableStarts unrealisable(loaded, fluents, context);
+  unrealisable.look(**states, *(*loop)->symbols());
+  unrealisable.report();
   const auto simulator = tried_simulator(loaded, context);
   const auto info = simulator ? simulator->info() : harness::SimulatorInfo();
   for (std::size_t i = 0; i < (*states)->holds.size() && !context.stopped(); ++i) {
     const auto state = harness::LoopStream::start_state(**loop, (*states)->holds[i]);
     const auto errors_before = sink.error_count();
     const auto prepared = harness::prepare_trace(scenario, fluents.ground(), info, *state, sink);
-    if (prepared && simulator && i < static_cast<std::size_t>(kTracesTried)) {
+    if (prepared && simulator && i < kStatesTried) {
       harness::check_first_start(
           scenario, *state, *prepared, fluents, kSeedTried, *simulator,
           [&] { return context.stopped(); }, sink);
@@ -309,7 +313,8 @@ void warn_of_grips(const harness::Scenario& scenario, base::DiagnosticSink& sink
   }
 }
 
-/// Prepares the first traces as a run does, and puts the built-in simulator into a start of each.
+/// Prepares the first traces as a run does, and puts the built-in simulator into a start of each of
+/// their first initial states.
 void check_first_traces(const ScenarioModel& loaded, EnumeratedTraces& traces,
                         const harness::ModelFluents& fluents,
                         const std::vector<harness::CausedFluent>& caused,
@@ -325,20 +330,22 @@ void check_first_traces(const ScenarioModel& loaded, EnumeratedTraces& traces,
   for (std::int64_t number = 0; number < last && !context.stopped(); ++number) {
     auto given = traces.next();
     if (!given || !*given) return;
-    const auto trace = unrealisable.look(**std::move(given), traces);
-    if (!trace) return;
-    const auto prepared = harness::prepare_trace(scenario, fluents.ground(), info, *trace, sink);
-    if (!prepared) return;
-    const auto errors_before = sink.error_count();
-    harness::check_stops(scenario, planned_fluents(*trace, caused), sink);
-    if (sink.error_count() != errors_before) return;
-    if (!simulator || !tried.insert(fmt::format("{}", fmt::join(trace->holds(0), ";"))).second) {
-      continue;
+    const auto from = unrealisable.look(**std::move(given), traces, kStatesTried);
+    if (!from) return;
+    for (const auto& trace : *from) {
+      const auto prepared = harness::prepare_trace(scenario, fluents.ground(), info, trace, sink);
+      if (!prepared) return;
+      const auto errors_before = sink.error_count();
+      harness::check_stops(scenario, planned_fluents(trace, caused), sink);
+      if (sink.error_count() != errors_before) return;
+      if (!simulator || !tried.insert(fmt::format("{}", fmt::join(trace.holds(0), ";"))).second) {
+        continue;
+      }
+      harness::check_first_start(
+          scenario, trace, *prepared, fluents, kSeedTried, *simulator,
+          [&] { return context.stopped(); }, sink);
+      if (sink.error_count() != errors_before) return;
     }
-    harness::check_first_start(
-        scenario, *trace, *prepared, fluents, kSeedTried, *simulator,
-        [&] { return context.stopped(); }, sink);
-    if (sink.error_count() != errors_before) return;
   }
 }
 
