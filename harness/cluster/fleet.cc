@@ -115,6 +115,16 @@ bool Fleet::agree(Slot slot, const std::string& worker, const SimulatorInfo& inf
   return false;
 }
 
+void Fleet::report_refused(const ProgramIdentity& found, const std::string& place,
+                           base::DiagnosticSink& sink) const {
+  const auto& self = options_.self;
+  if (found.version == self.version && found.build == self.build && !found.arithmetic.empty()) {
+    sink.error_about(codes::kWorkerArithmetic, place, found.arithmetic, self.arithmetic);
+  } else {
+    sink.error_about(codes::kWorkerRefused, place, to_string(found), to_string(self));
+  }
+}
+
 bool Fleet::report(base::DiagnosticSink& sink,
                    const std::function<void(const std::string&)>& remark) const {
   const std::lock_guard lock(mutex_);
@@ -132,10 +142,7 @@ bool Fleet::report(base::DiagnosticSink& sink,
           place.losses == 1 ? "a worker was" : fmt::format("{} workers were", place.losses),
           first_line(place.last_loss)));
     }
-    if (place.refused) {
-      sink.error_about(codes::kWorkerRefused, text, to_string(*place.refused),
-                       to_string(options_.self));
-    }
+    if (place.refused) report_refused(*place.refused, text, sink);
     if (place.given_up > 0) {
       add_notes(sink.error_about(codes::kPlaceGivenUp, text, place.given_up, place.place.slots,
                                  first_line(place.why)),

@@ -76,6 +76,8 @@ class Fleet : public std::enable_shared_from_this<Fleet> {
   };
 
   void drop(Slot slot);  // under the lock
+  void report_refused(const ProgramIdentity& found, const std::string& place,
+                      base::DiagnosticSink& sink) const;
 
   FleetOptions options_;
   mutable std::mutex mutex_;  // guards what follows, but for `place` of the places

@@ -11,6 +11,7 @@
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "compiler/base/sha256.h"
+#include "harness/cluster/arithmetic.h"
 
 namespace parallax::harness {
 namespace {
@@ -67,16 +68,19 @@ ProgramIdentity this_program(std::string version) {
   std::sort(objects.begin(), objects.end());
   std::string all;
   for (const auto& object : objects) all += object + '\0';
-  return {std::move(version), base::sha256_hex(all).substr(0, kBuildDigits)};
+  return {std::move(version), base::sha256_hex(all).substr(0, kBuildDigits), arithmetic_digits()};
 }
 
 std::string to_string(const ProgramIdentity& identity) {
-  return fmt::format("{} (build {})", identity.version, identity.build);
+  return fmt::format("{} (build {}, arithmetic {})", identity.version, identity.build,
+                     identity.arithmetic.empty() ? "not said" : identity.arithmetic);
 }
 
 std::string greeting_line(const ProgramIdentity& identity) {
-  return base::json_text(
-      nlohmann::ordered_json{{kKey, 1}, {"version", identity.version}, {"build", identity.build}});
+  return base::json_text(nlohmann::ordered_json{{kKey, 1},
+                                                {"version", identity.version},
+                                                {"build", identity.build},
+                                                {"arithmetic", identity.arithmetic}});
 }
 
 std::optional<ProgramIdentity> parse_greeting(std::string_view line) {
@@ -90,7 +94,9 @@ std::optional<ProgramIdentity> parse_greeting(std::string_view line) {
   auto is = base::json_as<std::string>(*version);
   auto built = base::json_as<std::string>(*build);
   if (!is || !built) return std::nullopt;
-  return ProgramIdentity{*std::move(is), *std::move(built)};
+  const auto* digits = base::json_member(json, "arithmetic");
+  auto arithmetic = digits == nullptr ? std::nullopt : base::json_as<std::string>(*digits);
+  return ProgramIdentity{*std::move(is), *std::move(built), arithmetic.value_or("")};
 }
 
 }  // namespace parallax::harness

@@ -124,6 +124,39 @@ TEST_CASE("workers of another version are refused, and both are named") {
   CHECK(mixed.err.find("build 0123456789abcdef") != std::string::npos);
 }
 
+std::string cpu_flags() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("flags")) return line + ' ';
+  }
+  return {};
+}
+
+TEST_CASE("workers on processors that calculate otherwise are refused") {
+  const Cluster cli;
+  if (cpu_flags().find(" fma ") == std::string::npos) {
+    MESSAGE("SKIPPED: this processor has no FMA that the C library could be told not to use");
+    return;
+  }
+  cli.coin(0.3, "seeded");
+  const std::string older =
+      "env GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-AVX2_Usable,-FMA_Usable";
+  const auto alone = cli.parallax({"rates", "coin.yaml", "--runs", "4", "--launcher", older});
+  CAPTURE(alone.err);
+  CHECK(alone.code == 4);
+  CHECK(alone.err.find("warning[W7135]: processors there calculate otherwise") !=
+        std::string::npos);
+  CHECK(alone.err.find("E7131") != std::string::npos);
+
+  cli.write("hosts", "2 " + older + "\n1 env\n");
+  const auto expected = cli.parallax({"rates", "coin.yaml", "--runs", "30"});
+  const auto mixed = cli.parallax({"rates", "coin.yaml", "--runs", "30", "--hosts", "hosts"});
+  CAPTURE(mixed.err);
+  CHECK(mixed.code == 0);
+  CHECK(mixed.out == expected.out);
+  CHECK(mixed.err.find("W7135") != std::string::npos);
+}
+
 TEST_CASE("hosts that are not there, come late or vanish leave the work to the others") {
   const Cluster cli;
   cli.coin(0.3, "seeded");

@@ -127,6 +127,7 @@ TEST_CASE("a launcher that is no command is refused") {
 TEST_CASE("who a worker says it is") {
   const auto self = this_program("1.2.3");
   CHECK(self.build.size() == 16);
+  CHECK(self.arithmetic.size() == 16);
   CHECK(this_program("1.2.3") == self);
   CHECK(parse_greeting(greeting_line(self)) == self);
   for (const auto* other : {"", "{}", "Welcome to parallax_worker", R"({"parallax_worker":1})",
