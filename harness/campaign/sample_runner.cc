@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "compiler/base/codes/scenarios.h"
+#include "compiler/base/contract.h"
 #include "compiler/base/suggest.h"
 #include "compiler/base/utf8.h"
 #include "harness/region/state_mapping.h"
@@ -16,6 +19,25 @@
 
 namespace parallax::harness {
 namespace {
+
+class SimulatorThrew : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Asks a simulator, which may be a user's own code. Broken promises of this program go on to main.
+template <typename Request>
+auto asked(const Request& request) {
+  try {
+    return request();
+  } catch (const WorkerGone&) {
+    throw;
+  } catch (const base::ContractViolation&) {
+    throw;
+  } catch (const std::exception& thrown) {
+    throw SimulatorThrew(thrown.what());
+  }
+}
 
 /// One attempt at a start that is given. Fills what was seen as far as it came.
 class Attempt {
@@ -29,8 +51,17 @@ class Attempt {
     record_.outcomes.clear();
     record_.reason.clear();
     record_.digest.clear();
+    try {
+      return simulate(abandoned);
+    } catch (const SimulatorThrew& thrown) {
+      return ended(SimStatus::kLost, fmt::format("the simulator threw \"{}\"", thrown.what()));
+    }
+  }
+
+ private:
+  std::optional<SimStatus> simulate(const std::function<bool()>& abandoned) {
     announce();
-    const auto reset = simulator_.reset(record_.initial, record_.seed);
+    const auto reset = asked([&] { return simulator_.reset(record_.initial, record_.seed); });
     if (reset.status == SimStatus::kFailed || reset.status == SimStatus::kTruncated) {
       return ended(SimStatus::kLost, "reset answered " + std::string(to_string(reset.status)));
     }
@@ -39,7 +70,8 @@ class Attempt {
     actions_.begin(record_);
     while (const auto* call = actions_.next(record_)) {
       if (abandoned()) return std::nullopt;
-      const auto outcome = simulator_.act(call->controller, call->arguments, call->time_limit_s);
+      const auto outcome = asked(
+          [&] { return simulator_.act(call->controller, call->arguments, call->time_limit_s); });
       if (outcome.status == SimStatus::kInvalidStart) {
         return ended(SimStatus::kLost, "an action answered invalid_start");
       }
@@ -56,7 +88,6 @@ class Attempt {
     return SimStatus::kOk;
   }
 
- private:
   void announce() {
     const auto* calls = actions_.known();
     if (calls == nullptr) return;
@@ -76,7 +107,7 @@ class Attempt {
   }
 
   std::optional<SimStatus> observe() {
-    auto state = simulator_.observe();
+    auto state = asked([&] { return simulator_.observe(); });
     if (const auto lost = state.find(kLostVariable); lost != state.end()) {
       const auto* reason = std::get_if<std::string>(&lost->second);
       return ended(SimStatus::kLost, reason != nullptr ? *reason : "lost while observing");

@@ -282,7 +282,7 @@ void WorkerPool::simulate(const Job& job, Simulator& simulator) {
   }
   if (!record || !claim(job, record->status, Clock::now() - begun)) return;
   if (moved_) moved_(*record, tap.log());
-  finished_(*record);
+  if (finished_) finished_(*record);
   ++runs_made_;
   const std::lock_guard lock(mutex_);
   for (const auto& outcome : record->outcomes) simulated_s_ += outcome.sim_time_s;

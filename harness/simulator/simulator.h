@@ -112,7 +112,9 @@ inline constexpr std::string_view kOfTheSolver = "of the solver";
 class RemoteSimulator;
 
 /// One simulated world. One instance per worker process, never shared.
-/// Call order: info at any time; reset, then any number of act and observe.
+/// Call order: info at any time; reset, then any number of act and observe. Where one of these
+/// three throws, that simulation is lost with the exception's text, and the next one begins with a
+/// reset.
 class Simulator {
  public:
   virtual ~Simulator() = default;

@@ -45,6 +45,18 @@ TrialSample next_of(Trial& trial) {
   return **std::move(sample);
 }
 
+TEST_CASE("nobody need be told of finished simulations") {
+  Trials bench;
+  bench.feed.emplace(1, bench.openness);
+  const auto factory = [&] { return std::make_unique<ScriptedSimulator>(bench.script); };
+  bench.bench.emplace(bench.scenario, *bench.feed, factory, bench.trial_options,
+                      std::function<void(const SampleRecord&)>(), bench.sink);
+  REQUIRE(bench.bench->start().has_value());
+  auto trial = bench.prepared();
+  CHECK(next_of(trial).verdict == SampleVerdict::kAsPredicted);
+  trial.end();
+}
+
 TEST_CASE("a trial is prepared with the region, the calls and the draws of its trace") {
   Trials bench;
   bench.start();
