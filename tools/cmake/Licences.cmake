@@ -2,7 +2,8 @@
 # contains. Included after all libraries have been looked for.
 #
 # parallax_part(NAME DEBIAN_PACKAGE LICENCE HOW VERSION): HOW is CONTAINS (in the program's own bytes),
-# DYNAMIC_LINK (needed to start) or RUNTIME (loaded by a module, when it is needed).
+# DYNAMIC_LINK (needed to start) or RUNTIME (loaded by a module, when it is needed). Libraries that others
+# bring along are parts too.
 set(PARALLAX_SPDX_PACKAGES "")
 set(PARALLAX_SPDX_RELATIONS "")
 set(PARALLAX_NOTICES "")
@@ -59,11 +60,13 @@ parallax_part(fmt libfmt-dev MIT CONTAINS "${fmt_VERSION}")
 parallax_part(yaml-cpp libyaml-cpp-dev MIT CONTAINS "${yaml-cpp_VERSION}")
 parallax_part(GMP libgmp-dev "LGPL-3.0-or-later OR GPL-2.0-or-later" DYNAMIC_LINK "${Gmp_VERSION}")
 parallax_part(ODE libode-dev "LGPL-2.1-or-later OR BSD-3-Clause" DYNAMIC_LINK "${Ode_VERSION}")
+parallax_part(libccd libccd2 BSD-3-Clause DYNAMIC_LINK "")
 get_target_property(readers parallax_world COMPILE_DEFINITIONS)
 if("PARALLAX_HAS_URDFDOM" IN_LIST readers)
   parallax_part(urdfdom liburdfdom-dev BSD-3-Clause DYNAMIC_LINK "")
   parallax_part(urdfdom_headers liburdfdom-headers-dev BSD-3-Clause CONTAINS "")
   parallax_part(console_bridge libconsole-bridge-dev BSD-3-Clause DYNAMIC_LINK "")
+  parallax_part(TinyXML libtinyxml2.6.2v5 Zlib DYNAMIC_LINK "")
 endif()
 if(TARGET parallax_sdf)
   parallax_part(libsdformat libsdformat-dev Apache-2.0 RUNTIME "")
@@ -72,9 +75,16 @@ endif()
 if(TARGET parallax_mesh)
   parallax_part(Assimp libassimp-dev BSD-3-Clause RUNTIME "")
   parallax_part(Qhull libqhull-dev Qhull RUNTIME "")
+  parallax_part(zlib zlib1g Zlib RUNTIME "")
+  parallax_part(minizip libminizip1 Zlib RUNTIME "")
+  parallax_part(Draco libdraco7 Apache-2.0 RUNTIME "")
 endif()
 if(TARGET parallax_mujoco)
   parallax_part(MuJoCo libmujoco-dev Apache-2.0 RUNTIME "")
+  parallax_part(LodePNG liblodepng0 Zlib RUNTIME "")
+endif()
+if(TARGET parallax_sdf OR TARGET parallax_mujoco)
+  parallax_part(TinyXML-2 libtinyxml2-9 Zlib RUNTIME "")
 endif()
 parallax_part("GNU C Library" libc6-dev LGPL-2.1-or-later DYNAMIC_LINK "")
 parallax_part(libstdc++ libstdc++6 "GPL-3.0-or-later WITH GCC-exception-3.1" DYNAMIC_LINK

@@ -60,6 +60,11 @@ foreach(package parallax libparallax-dev)
     set(component development)
     install(FILES ${PROJECT_BINARY_DIR}/generated/copyright
       DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
+    # What the library's headers are for, and the program that shows it.
+    install(FILES ${PROJECT_SOURCE_DIR}/docs/library.md
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/library/
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package}/examples COMPONENT ${component})
   endif()
   install(CODE "
     set(folder \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/doc/${package}\")

@@ -20,6 +20,13 @@ if(NOT code EQUAL 2)
   message(FATAL_ERROR "the example without a scenario ended with ${code}")
 endif()
 
+# What the library is for is installed with it.
+foreach(page library.md examples/example.cc examples/CMakeLists.txt)
+  if(NOT EXISTS ${WORK}/prefix/share/doc/libparallax-dev/${page})
+    message(FATAL_ERROR "the library's ${page} is not installed")
+  endif()
+endforeach()
+
 # The installed program finds the modules it came with, also from another folder.
 file(GLOB modules RELATIVE ${BUILD}/modules ${BUILD}/modules/parallax_*.so)
 foreach(module ${modules})
