@@ -74,7 +74,7 @@ class Summary {
     if (differs) {
       text = discrepancy_sentence(result_, *found_.front());
     } else if (result_.traces.empty()) {
-      text = result_.interrupted ? "interrupted before anything was compared"
+      text = result_.interrupted ? "it ended before anything was compared"
                                  : "no trace, so nothing was compared";
     } else if (result_.failed) {
       text = "an error ended the run";
@@ -308,7 +308,10 @@ class Summary {
     } else {
       text += " in closed loop";
     }
-    text += fmt::format(", {} {}, seed {}, {}", simulator.name, simulator.version, result_.seed,
+    if (!simulator.name.empty()) {  // empty: none could be started
+      text += fmt::format(", {} {}", simulator.name, simulator.version);
+    }
+    text += fmt::format(", seed {}, {}", result_.seed,
                         result_.comparison == Comparison::kFinal ? "compared at the end"
                                                                  : "compared at every step");
     line("made", text);

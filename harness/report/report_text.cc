@@ -45,7 +45,8 @@ class TextReport {
     out_ += fmt::format("scenario {}\n", base::printable(result_.scenario));
     if (!result_.title.empty()) line("about", result_.title);
     const auto& simulator = result_.simulator;
-    auto text = fmt::format("{} {}", simulator.name, simulator.version);
+    auto text = simulator.name.empty() ? std::string("none was started")
+                                       : fmt::format("{} {}", simulator.name, simulator.version);
     if (simulator.timestep_s > 0.0) {
       text += fmt::format(", steps of {:.6g} ms", 1000.0 * simulator.timestep_s);
     }

@@ -96,6 +96,22 @@ TEST_CASE("a launcher that never ceases to talk is given up") {
   }
 }
 
+TEST_CASE("without any worker nothing is said of a verdict, and a suite has no answer") {
+  const Cluster cli;
+  const auto ran = cli.parallax({"run", "scenario.yaml", "--launcher", "false", "--out", "out"});
+  CAPTURE(ran.out);
+  CHECK(ran.code == 4);
+  CHECK(ran.out.find("it ended before anything was compared") != std::string::npos);
+  CHECK(ran.out.find(", ,") == std::string::npos);
+  CHECK(ran.err.find("E7131") != std::string::npos);
+  const auto suite =
+      cli.parallax({"suite", "scenario.yaml", "--launcher", "false", "--out", "all"});
+  CAPTURE(suite.out);
+  CHECK(suite.out.find("ERROR scenario.yaml") != std::string::npos);
+  CHECK(suite.out.find("no worker was left to simulate it") != std::string::npos);
+  CHECK(suite.out.find("0 passed, 0 failed, 1 without an answer") != std::string::npos);
+}
+
 TEST_CASE("workers of another version are refused, and both are named") {
   const Cluster cli;
   cli.coin(0.3, "seeded");

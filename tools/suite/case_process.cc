@@ -4,13 +4,16 @@
 
 #include <csignal>
 
+#include "compiler/base/codes/campaigns.h"
 #include "tools/suite/expectation.h"
 
 namespace parallax::tools {
 namespace {
 
-/// Why a command that ended with this code gave no answer.
-std::string no_answer(int code) {
+/// Why a command gave no answer.
+std::string no_answer(const base::Captured& child) {
+  const auto code = child.code;
+  if (lacked_workers(child)) return "no worker was left to simulate it";
   if (code < 0) return "the program could not be started";
   if (code == 2 || code == 3) return "the input was refused";
   if (code == 4) return "inconclusive: a limit ended it first";
@@ -46,9 +49,14 @@ base::Captured run_this_program(const CommandWords& words, Footprint& footprint,
   return child;
 }
 
+bool lacked_workers(const base::Captured& child) {
+  const auto id = base::info(codes::kNoWorkerLeft).id;
+  return child.code == 4 && child.err.find(fmt::format("error[{}]", id)) != std::string::npos;
+}
+
 void report_no_answer(const base::Captured& child, CaseResult& result) {
   result.outcome = Outcome::kError;
-  result.problems = {no_answer(child.code)};
+  result.problems = {no_answer(child)};
   if (auto error = first_error(child.out); !error.empty()) {
     result.problems.push_back(std::move(error));
   }

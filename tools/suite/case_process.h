@@ -25,6 +25,9 @@ base::Captured run_this_program(const CommandWords& words, Footprint& footprint,
                                 const std::atomic<bool>& stop,
                                 std::optional<std::uint64_t> cpu_limit_s = {});
 
+/// Did the command end because no worker was left? What its run says then is no answer.
+bool lacked_workers(const base::Captured& child);
+
 /// Notes why a process ended without an answer.
 void report_no_answer(const base::Captured& child, CaseResult& result);
 

@@ -161,7 +161,9 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
   result.messages += child.err;
   // Exit code 1 is a finding and 4 a verdict that may be the expected one; both give a document.
   const bool answered = child.code == 0 || child.code == 1 || child.code == 4;
-  if (!answered || has_failed(child.out)) return report_no_answer(child, result);
+  if (!answered || has_failed(child.out) || lacked_workers(child)) {
+    return report_no_answer(child, result);
+  }
   note_verdict(child.out, result);
   const bool wants_kind = expect.cause && !expect.cause->kind.empty();
   auto discrepancy = first_discrepancy(child.out);
