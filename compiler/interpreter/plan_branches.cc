@@ -5,7 +5,10 @@
 // ends.
 #include <algorithm>
 #include <iterator>
+#include <optional>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include "compiler/interpreter/plan_machine.h"
 
@@ -282,6 +285,50 @@ std::optional<PlanStop> PlanMachine::wait(PlanState& state, const PlanTurn& turn
   if (goes_on) par.branches[par.active].turn = turn;
   put_aside(state, state.pars.size() - 1);
   return next_branch(state);
+}
+
+/// Does the instruction neither see nor change anything outside of the running branch? Built-ins
+/// fail only where designators are equated.
+bool PlanMachine::is_own(const PlanState& state, const PlanInstruction& instruction) const {
+  static constexpr PlanOp kOwn[] = {
+      PlanOp::kConstant, PlanOp::kPop,       PlanOp::kSqueeze, PlanOp::kJump, PlanOp::kJumpIfNil,
+      PlanOp::kCall,     PlanOp::kCallLocal, PlanOp::kReturn,  PlanOp::kTick, PlanOp::kLoadGlobal};
+  if (instruction.op == PlanOp::kLoad || instruction.op == PlanOp::kStore) {
+    return place(state, instruction) >= state.pars.back().height;
+  }
+  if (instruction.op == PlanOp::kBuiltin) return !code_.identities;
+  return std::find(std::begin(kOwn), std::end(kOwn), instruction.op) != std::end(kOwn);
+}
+
+/// Runs on to the next `sleep`, by steps that concern the running branch alone. None: there is no
+/// such way, and the state is of no use any more.
+std::optional<DatumId> PlanMachine::run_to_sleep(PlanState& state) {
+  for (;;) {
+    const auto& frame = state.frames.back();
+    const auto& instruction = code_.units[frame.unit].code[frame.pc];
+    if (instruction.op != PlanOp::kSleep && !is_own(state, instruction)) return std::nullopt;
+    if (!count_step()) return std::nullopt;
+    ++state.frames.back().pc;
+    if (instruction.op == PlanOp::kSleep) {
+      state.stack.push_back(values_.nil());
+      return instruction.source;
+    }
+    if (execute(state, instruction)) return std::nullopt;
+  }
+}
+
+/// Waits for a turn. A branch that comes from here to another `sleep` by itself waits there: nobody
+/// can tell the difference. A loop that does nothing but sleep waits at one of its turns.
+PlanMachine::Step PlanMachine::sleep(PlanState& state, DatumId form) {
+  std::set<std::vector<std::uint32_t>> passed;
+  for (;;) {
+    auto ahead = state;
+    const auto next = run_to_sleep(ahead);
+    if (!next || !passed.insert(state_key(ahead, values_, false)).second) break;
+    state = std::move(ahead);
+    form = *next;
+  }
+  return wait(state, {values_.nil(), form, true});
 }
 
 std::vector<PlanMachine::BranchPath> PlanMachine::waiting(const PlanState& state) {

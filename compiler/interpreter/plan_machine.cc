@@ -317,7 +317,7 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
     case PlanOp::kSleep:
       stack.push_back(values_.nil());
       if (state.pars.empty()) return {};
-      return wait(state, {values_.nil(), instruction.source, true});
+      return sleep(state, instruction.source);
     case PlanOp::kTick:
       return tick(state, instruction);
     case PlanOp::kDone:

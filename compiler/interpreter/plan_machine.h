@@ -283,6 +283,9 @@ class PlanMachine {
   Step bind_special(PlanState& state, const PlanInstruction& instruction);
   Step store_special(PlanState& state, const PlanInstruction& instruction);
   std::optional<std::size_t> special(const PlanState& state, std::uint32_t global) const;
+  Step sleep(PlanState& state, DatumId form);
+  std::optional<DatumId> run_to_sleep(PlanState& state);
+  bool is_own(const PlanState& state, const PlanInstruction& instruction) const;
   Step start_par(PlanState& state, const PlanInstruction& instruction);
   Step end_branch(PlanState& state);
   Step next_branch(PlanState& state);

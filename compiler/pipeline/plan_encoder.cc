@@ -18,6 +18,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -170,6 +171,31 @@ void RegisterStep::finish(std::uint32_t origin) {
 /// A place of control: locations first, then terminals.
 using NodeNumber = std::size_t;
 
+/// The branches of a graph, each before those that it leads to: no cycle consists of branches
+/// alone. Linear.
+std::vector<BranchId> branches_in_order(const PlanGraph& graph) {
+  std::vector<BranchId> out;
+  std::vector<std::uint8_t> ways(graph.branches.size());  // taken so far
+  for (std::size_t i = 0; i < graph.branches.size(); ++i) {
+    std::vector<BranchId> open = {graph.branches.id_at(i)};
+    if (ways[i] > 0) continue;
+    while (!open.empty()) {
+      const auto id = open.back();
+      const auto way = ways[id.index()]++;
+      if (way == 2) {
+        out.push_back(id);
+        open.pop_back();
+        continue;
+      }
+      const auto& to = way == 0 ? graph.branches[id].if_false : graph.branches[id].if_true;
+      const auto* next = std::get_if<BranchId>(&to);
+      if (next != nullptr && ways[next->index()] == 0) open.push_back(*next);
+    }
+  }
+  std::reverse(out.begin(), out.end());
+  return out;
+}
+
 /// How many of the terminals before this one are bounds.
 std::size_t cut_number(const PlanGraph& graph, std::size_t terminal) {
   std::size_t number = 0;
@@ -194,6 +220,7 @@ class PlanEncoder {
       : graph_(graph),
         formulas_(formulas),
         liveness_(plan_liveness(graph)),
+        branch_order_(branches_in_order(graph)),
         registers_(graph, formulas, model, grounder, sink),
         model_(model),
         grounder_(grounder),
@@ -208,16 +235,18 @@ class PlanEncoder {
 
   base::Status run(const std::set<std::string>& plan_events, RunningAtoms running) {
     if (!resolve_events()) return sink_.already_reported();
-    const auto count = graph_.locations.size() + graph_.terminals.size();
+    const auto count = graph_.locations.size() + graph_.terminals.size() + graph_.branches.size();
     auto incoming = std::vector<std::vector<FormulaId>>(count);
-    route(graph_.entry, model_.formulas().truth(), 0, incoming);
+    route(graph_.entry, model_.formulas().truth(), incoming);
     for (Timepoint t = 0;; ++t) {
+      if (!decide(t, incoming)) return sink_.already_reported();
       const auto here = place_control(incoming, t);
       const bool at_horizon = t == model_.horizon();
       if (at_horizon || running == RunningAtoms::kEverywhere) mark_running(here, t);
       if (at_horizon) break;
       perform(here, t, plan_events);
-      incoming.assign(count, {});
+      incoming.clear();
+      incoming.resize(count);
       leave(here, t, incoming);
       if (grounder_.failed() || sink_.error_count() != errors_at_start_) {
         return sink_.already_reported();
@@ -276,27 +305,38 @@ class PlanEncoder {
     return origins_.empty() ? 0 : origins_[node < origins_.size() ? node : 0];
   }
 
-  /// Adds `condition` to the incoming conditions of every node that `target` leads to at t.
-  void route(const PlanTarget& target, FormulaId condition, Timepoint t,
-             std::vector<std::vector<FormulaId>>& incoming) {
-    std::vector<std::pair<PlanTarget, FormulaId>> todo = {{target, condition}};
-    while (!todo.empty()) {
-      const auto [to, reached] = todo.back();
-      todo.pop_back();
-      if (reached == model_.formulas().falsity()) continue;
-      if (const auto* location = std::get_if<LocationId>(&to)) {
-        incoming[location->index()].push_back(reached);
-      } else if (const auto* terminal = std::get_if<TerminalId>(&to)) {
-        incoming[graph_.locations.size() + terminal->index()].push_back(reached);
-      } else {
-        const auto id = std::get<BranchId>(to);
-        const auto& branch = graph_.branches[id];
-        const auto guard = decision(id, t);
-        if (!guard) return;
-        todo.emplace_back(branch.if_false, model_.formulas().conjunction(reached, ~*guard));
-        todo.emplace_back(branch.if_true, model_.formulas().conjunction(reached, *guard));
-      }
+  /// Adds `condition` to the incoming conditions of the target. Those of branches stand behind the
+  /// nodes.
+  void route(const PlanTarget& target, FormulaId condition,
+             std::vector<std::vector<FormulaId>>& incoming) const {
+    if (condition == model_.formulas().falsity()) return;
+    const auto terminals = graph_.locations.size();
+    const auto branches = terminals + graph_.terminals.size();
+    if (const auto* location = std::get_if<LocationId>(&target)) {
+      incoming[location->index()].push_back(condition);
+    } else if (const auto* terminal = std::get_if<TerminalId>(&target)) {
+      incoming[terminals + terminal->index()].push_back(condition);
+    } else {
+      incoming[branches + std::get<BranchId>(target).index()].push_back(condition);
     }
+  }
+
+  /// Leads control through the branches at t, each once, however many ways lead to it. False:
+  /// reported.
+  bool decide(Timepoint t, std::vector<std::vector<FormulaId>>& incoming) {
+    const auto nodes = graph_.locations.size() + graph_.terminals.size();
+    auto& formulas = model_.formulas();
+    for (const auto id : branch_order_) {
+      const auto& ways = incoming[nodes + id.index()];
+      if (ways.empty()) continue;
+      const auto reached = ways.size() == 1 ? ways.front() : formulas.disjunction(ways);
+      const auto guard = decision(id, t);
+      if (!guard) return false;
+      route(graph_.branches[id].if_true, formulas.conjunction(reached, *guard), incoming);
+      route(graph_.branches[id].if_false, formulas.conjunction(reached, ~*guard), incoming);
+    }
+    incoming.resize(nodes);
+    return true;
   }
 
   /// Condition of a branch at t. None: reported.
@@ -375,8 +415,8 @@ class PlanEncoder {
                      origin_of(node));
       const auto failed = formulas.conjunction(*here[node], ~ok);
       step.leave(id, ok, failed, origin_of(node));
-      route(location.on_success, ok, t + 1, incoming);
-      route(location.on_failure, failed, t + 1, incoming);
+      route(location.on_success, ok, incoming);
+      route(location.on_failure, failed, incoming);
     }
     step.finish(origin_of(0));
   }
@@ -400,6 +440,7 @@ class PlanEncoder {
   const PlanGraph& graph_;
   const PlanFormulas& formulas_;
   PlanLiveness liveness_;
+  std::vector<BranchId> branch_order_;
   PlanRegisters registers_;
   GroundModel& model_;
   FormulaGrounder& grounder_;

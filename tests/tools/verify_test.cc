@@ -238,6 +238,20 @@ TEST_CASE("traces: branches of a plan run in written order, or in every order") 
   CHECK(both["exploration"] == "all traces explored");
 }
 
+TEST_CASE("turns of branches that meet again cost their number, not their orders") {
+  const CliFixture cli;
+  cli.write("named.bind", "motion going (:object name ?r) -> Go(?r) ok: RobotIn(?r) @t+1\n");
+  const std::string branch = "(dotimes (i 5) (sleep 1) (setf k 0))";
+  cli.write("plan.lisp", "(let ((k 0)) (par " + branch + branch + branch + "))\n" +
+                             "(perform (a motion (type going) (object (an object (name r2)))))\n");
+  // 756,756 orders of 216 states.
+  const auto answer = json_of(
+      cli, {"verify", "domain.e", "start.e", "--plan", "plan.lisp", "--bind", "named.bind",
+            "--horizon", "2", "--par=interleave", "--time-limit=20", "--property",
+            "HoldsAt(Holding(),time) | !HoldsAt(Holding(),time)"});
+  CHECK(answer["proof"] == "checked");
+}
+
 TEST_CASE("a loop of `go` around a question ends at its bound") {
   const CliFixture cli;
   cli.write("named.bind",

@@ -281,6 +281,30 @@ TEST_CASE("branches: one that sleeps again and again brings nothing new") {
 TEST_CASE("branches: without turns they run in written order") {
   const auto plan = unroll(prelude() + "(par (seq (go1) (go2)) (sig))");
   CHECK(plan.codes() == Strings{"W-PAR"});
+TEST_CASE("branches: sleeps in a row that others cannot tell apart are one") {
+  const auto sleeps = [](int count) {
+    const auto branch = fmt::format("(dotimes (i {}) (sleep 1))", count);
+    return by_turns("(par (seq " + branch + " (go1)) (seq " + branch + " (go2)) " + branch + ")");
+  };
+  const auto one = sleeps(1);
+  const auto many = sleeps(200);
+  REQUIRE(many.graph.has_value());
+  CHECK(many.graph->branches.size() == one.graph->branches.size());
+  CHECK(many.terminals() == one.terminals());
+  CHECK(Ways(many).all == Ways(one).all);
+  // Between these the other branch can look at the variable.
+  const auto seen = by_turns(
+      "(let ((k 0)) (par (dotimes (i 3) (sleep 1) (setf k i)) (seq (sleep 1) (dotimes (i k) (sig)))"
+      "))");
+  REQUIRE(seen.graph.has_value());
+  CHECK(Ways(seen).all == std::set<std::string>{"DONE", "Signal() DONE", "Signal() Signal() DONE"});
+  // What a branch does behind its last `sleep` comes when it wakes up, not before.
+  const auto fails = by_turns("(par (seq (sleep 1) (sleep 1) (fail 'object-unreachable)) (go1))");
+  REQUIRE(fails.graph.has_value());
+  CHECK(Ways(fails).all ==
+        std::set<std::string>{"FAILED(object-unreachable)", "Go(r1) FAILED(object-unreachable)"});
+}
+
   CHECK(plan.events("+++") == Strings{"Go(r1)", "Go(r2)", "Signal()", "DONE"});
 }
 
