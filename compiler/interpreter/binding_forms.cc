@@ -51,7 +51,7 @@ DatumId list_at(FormCompiler& c, std::vector<DatumId> items, DatumId place) {
   return c.data.add_list(items, c.data.source(place));
 }
 
-/// Does the place name a part of a list in a variable, so that nothing happens where it is read?
+/// Does the place name a part of a list in a variable?
 bool is_part(const FormCompiler& c, DatumId place) {
   static constexpr std::string_view kListParts[] = {"car",    "cdr",    "first", "rest", "second",
                                                     "third",  "fourth", "fifth", "cadr", "caddr",
@@ -63,16 +63,17 @@ bool is_part(const FormCompiler& c, DatumId place) {
   const bool indexed = head == "nth" || head == "elt" || head == "getf";
   if (items.size() != (indexed ? 3U : 2U)) return false;
   const std::size_t whole = head == "nth" ? 2 : 1;
-  const auto list = items[whole];
-  if (!c.data.is_symbol(list) && !is_part(c, list)) return false;
-  return !indexed || !c.data.is_list(items[3 - whole]) || c.data.head(items[3 - whole]) == "quote";
+  return c.data.is_symbol(items[whole]) || is_part(c, items[whole]);
 }
 
 /// A new list takes the place of the one in the variable: lists are values here. Others that share
-/// the old one do not see the change, which they would in Lisp.
-void set_part(FormCompiler& c, DatumId form, DatumId place, DatumId value) {
+/// the old one do not see the change, which they would in Lisp. Our own macro of that name says in
+/// which order the arguments are computed.
+void change_part(FormCompiler& c, DatumId form, std::string_view macro,
+                 std::vector<DatumId> arguments) {
   c.code.code().gaps.push_back({"changes of shared lists", form});
-  c.compile(list_at(c, {symbol_at(c, "%set-place", form), place, value}, form));
+  arguments.insert(arguments.begin(), symbol_at(c, macro, form));
+  c.compile(list_at(c, std::move(arguments), form));
 }
 
 void form_setf(FormCompiler& c, DatumId form, FormItems items) {
@@ -83,7 +84,7 @@ void form_setf(FormCompiler& c, DatumId form, FormItems items) {
       c.code.drop(form);
     }
     if (is_part(c, items[i])) {
-      set_part(c, form, items[i], items[i + 1]);
+      change_part(c, form, "%set-place", {items[i], items[i + 1]});
       continue;
     }
     c.compile(items[i + 1]);
@@ -100,7 +101,7 @@ void form_incf(FormCompiler& c, DatumId form, FormItems items) {
     const auto one = c.data.add_number(Number(1), c.data.source(form));
     const auto step = items.size() == 3 ? items[2] : one;
     const auto sign = symbol_at(c, c.form_name(form) == "decf" ? "-" : "+", form);
-    return set_part(c, form, items[1], list_at(c, {sign, items[1], step}, form));
+    return change_part(c, form, "%change-place", {items[1], sign, step});
   }
   const auto* target = assignable(c, form, items[1]);
   if (target == nullptr) return c.nil(form);
@@ -130,7 +131,7 @@ void form_push(FormCompiler& c, DatumId form, FormItems items) {
   }
   if (is_part(c, items[2])) {
     const auto joins = symbol_at(c, c.form_name(form) == "push" ? "cons" : "adjoin", form);
-    return set_part(c, form, items[2], list_at(c, {joins, items[1], items[2]}, form));
+    return change_part(c, form, "%push-place", {items[2], joins, items[1]});
   }
   c.compile(items[1]);
   const auto* target = assignable(c, form, items[2]);
@@ -145,9 +146,7 @@ void form_push(FormCompiler& c, DatumId form, FormItems items) {
 void form_pop(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() != 2) return c.refuse(form, "expected a variable");
   if (is_part(c, items[1])) {
-    c.compile(list_at(c, {symbol_at(c, "car", form), items[1]}, form));
-    set_part(c, form, items[1], list_at(c, {symbol_at(c, "cdr", form), items[1]}, form));
-    return c.code.drop(form);
+    return change_part(c, form, "%pop-place", {items[1]});
   }
   const auto* target = assignable(c, form, items[1]);
   if (target == nullptr) return c.nil(form);
