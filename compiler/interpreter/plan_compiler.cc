@@ -114,7 +114,9 @@ class PlanCompiler {
         reach_.define(c_.data.key(items[1]), form);
         if (head == "defmacro") macros.insert(c_.data.key(items[1]));
         if (defines_function(head)) last = c_.data.key(items[1]);
-      } else if (!is_housekeeping(head) && head != "define-condition") {
+      } else if (head == "define-condition") {
+        reach_.add_slots(form);
+      } else if (!is_housekeeping(head)) {
         others.push_back(form);
       }
     }

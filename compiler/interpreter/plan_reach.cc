@@ -12,8 +12,29 @@ namespace parallax::compiler {
 
 void PlanReach::reach(std::string_view name) {
   if (!reached_.emplace(name).second) return;
-  const auto found = definitions_.find(name);
-  if (found != definitions_.end()) open_.push_back(found->second);
+  const auto [begin, end] = definitions_.equal_range(name);
+  for (auto found = begin; found != end; ++found) open_.push_back(found->second);
+}
+
+void PlanReach::add_slots(DatumId condition) {
+  const auto items = data_.children(condition);
+  if (items.size() < 4) return;
+  for (const auto slot : data_.children(items[3])) {
+    const auto parts = data_.children(slot);
+    const auto options = [&](std::string_view name) {
+      std::vector<DatumId> out;
+      for (std::size_t i = 1; i + 1 < parts.size(); i += 2) {
+        if (data_.is_keyword(parts[i]) && data_.name(parts[i]) == name) out.push_back(parts[i + 1]);
+      }
+      return out;
+    };
+    for (const auto* kind : {"reader", "accessor"}) {
+      for (const auto reader : options(kind)) {
+        if (!data_.is_symbol(reader)) continue;
+        for (const auto initial : options("initform")) define(data_.key(reader), initial);
+      }
+    }
+  }
 }
 
 void PlanReach::read(DatumId form) {

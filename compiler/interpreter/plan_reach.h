@@ -17,6 +17,8 @@ class PlanReach {
   explicit PlanReach(const LispData& data) : data_(data) {}
   /// A function, macro or global.
   void define(std::string_view key, DatumId form) { definitions_.emplace(key, form); }
+  /// A `define-condition`: where the reader of a slot is named, its :initform counts.
+  void add_slots(DatumId condition);
   /// A `def-fact-group`. A rule for a type of actions counts where the type is named, any other
   /// clause where its predicate is.
   void add_facts(DatumId group);
@@ -34,7 +36,7 @@ class PlanReach {
   bool counts(const Clause& clause) const;
 
   const LispData& data_;
-  std::map<std::string, DatumId, std::less<>> definitions_;
+  std::multimap<std::string, DatumId, std::less<>> definitions_;
   std::vector<Clause> clauses_;
   std::set<std::string, std::less<>> reached_;  // names and keys
   std::vector<DatumId> open_;

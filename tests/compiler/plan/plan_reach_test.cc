@@ -62,6 +62,26 @@ TEST_CASE("reach: a rule counts if the type of its actions is named") {
   CHECK(codes(helper + "(go1)").empty());
 }
 
+TEST_CASE("reach: what a slot begins with counts where the slot is read") {
+  const std::string lost =
+      "(define-condition lost (plan-failure)"
+      " ((place :initarg :place :initform (usual-place) :reader place-of)))"
+      "(defun usual-place () *p2*)";
+  const std::string asks =
+      "(with-failure-handling ((lost (e) (let ((?p (place-of e)))"
+      " (perform (a motion (type going) (target ?p)))) (return))) (fail 'lost))";
+  const auto plan = unroll(prelude() + lost + asks);
+  CHECK(plan.codes().empty());
+  CHECK(plan.events("+") == Strings{"Go(r2)", "DONE"});
+  const std::string broken = lost + "(defun unused () (read-camera))";
+  CHECK(codes(broken + asks).empty());
+  const std::string camera =
+      "(define-condition lost (plan-failure) ((place :initform (seen) :reader place-of)))"
+      "(defun seen () (read-camera))";
+  CHECK(codes(camera + "(go1)").empty());
+  CHECK(codes(camera + asks) == Strings{"CPL010"});
+}
+
 TEST_CASE("reach: functions of the binding table count") {
   const std::string plan = prelude() + "(defun fetch () (turn-tap))(go1)";
   CHECK(unroll(plan, {}, std::string(kBinding) + "action fetching -> plan fetch()\n").codes() ==
