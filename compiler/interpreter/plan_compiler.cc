@@ -41,9 +41,10 @@ bool is_definition(std::string_view head) {
 class PlanCompiler {
  public:
   PlanCompiler(LispText& text, ValueStore& values, base::DiagnosticSink& sink, bool interleave,
-               const PlanBinding& binding)
+               const PlanBinding& binding, std::optional<base::FileId> entry_file)
       : text_(text),
         binding_(binding),
+        entry_file_(entry_file),
         sink_(sink),
         c_(text, values, sink, interleave),
         reach_(text.data) {
@@ -124,7 +125,9 @@ class PlanCompiler {
       return c_.data.head(form) && macros.contains(c_.data.key(c_.data.children(form)[0]));
     };
     const bool bare = !std::all_of(others.begin(), others.end(), expands);
-    if (entry) std::erase_if(others, [&](DatumId form) { return !expands(form); });
+    if (entry || entry_file_) {
+      std::erase_if(others, [&](DatumId form) { return !is_run(form) && !expands(form); });
+    }
     if (entry) names.push_back(entry_key(*entry));
     if (!entry && !bare) names.push_back(last);
     for (const auto& bound : binding_.entries) {
@@ -304,7 +307,7 @@ class PlanCompiler {
           open.insert(open.end(), inside.rbegin(), inside.rend());
         } else if (datum != form && head == "define-condition") {
           define_condition(datum, items);
-        } else if (datum == form || !define(datum, true)) {
+        } else if ((datum == form || !define(datum, true)) && is_run(form)) {
           bare_forms_.emplace_back(position, datum);
         }
       }
@@ -335,6 +338,11 @@ class PlanCompiler {
     }
     c_.code.leave_unit(PlanOp::kDone, first);
     while (!c_.defined.unwritten.empty()) c_.complete(c_.defined.unwritten.begin()->first);
+  }
+
+  /// Does a form at top level run, unless a function is the entry?
+  bool is_run(DatumId form) const {
+    return !entry_file_ || c_.data.source(form).file == *entry_file_;
   }
 
   /// An entry may be named as `package::name` or `package:name`.
@@ -371,7 +379,7 @@ class PlanCompiler {
                !found->second.parameters.empty() && !found->second.parameters.front().optional) {
       c_.error(codes::kNoPlanEntry, found->second.source,
                fmt::format("`{}` needs arguments", *name))
-          .fix(fmt::format("call it at top level: ({} ...)", *name));
+          .fix(fmt::format("give them: --plan-entry \"({} ...)\"", *name));
     } else {
       callee.function = &found->second;
       compile_call(c_, found->second.source, *name, callee, {});
@@ -382,6 +390,7 @@ class PlanCompiler {
   using Positioned = std::pair<std::size_t, DatumId>;  // a form and where it stands
   LispText& text_;
   const PlanBinding& binding_;
+  std::optional<base::FileId> entry_file_;
   base::DiagnosticSink& sink_;
   FormCompiler c_;
   PlanReach reach_;
@@ -397,10 +406,10 @@ class PlanCompiler {
 
 }  // namespace
 
-base::Result<PlanCode> compile_plan(LispText& text, const std::optional<std::string>& entry,
-                                    bool interleave, const PlanBinding& binding, ValueStore& values,
+base::Result<PlanCode> compile_plan(LispText& text, const PlanEntry& entry, bool interleave,
+                                    const PlanBinding& binding, ValueStore& values,
                                     base::DiagnosticSink& sink) {
-  return PlanCompiler(text, values, sink, interleave, binding).compile(entry);
+  return PlanCompiler(text, values, sink, interleave, binding, entry.forms).compile(entry.function);
 }
 
 }  // namespace parallax::compiler

@@ -164,13 +164,19 @@ struct PlanCode {
   bool multiple_values = false;  // some form gives several values
 };
 
-/// Turns a plan into code for the unroller's machine. `entry` names the function to run; without it
-/// the bare top-level forms run, or else the last function defined; CPL006 if there is nothing to
+/// What runs: a function, or the forms at top level of one file; otherwise the forms at top level
+/// of all files, or else the last function defined.
+struct PlanEntry {
+  std::optional<std::string> function = std::nullopt;
+  std::optional<base::FileId> forms = std::nullopt;
+};
+
+/// Turns a plan into code for the unroller's machine; CPL006 if there is nothing to
 /// run. What the run cannot come to is not looked at. `binding` names functions that carry actions
 /// out, and the table of failure classes. `interleave`: the branches of `par` take turns; otherwise
 /// they run in written order (W-PAR). Macros add their expansions to the text's data.
-base::Result<PlanCode> compile_plan(LispText& text, const std::optional<std::string>& entry,
-                                    bool interleave, const PlanBinding& binding, ValueStore& values,
+base::Result<PlanCode> compile_plan(LispText& text, const PlanEntry& entry, bool interleave,
+                                    const PlanBinding& binding, ValueStore& values,
                                     base::DiagnosticSink& sink);
 
 }  // namespace parallax::compiler

@@ -399,7 +399,8 @@ base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files,
   if (!text || !resolve_packages(*text, sink)) return sink.already_reported();
   ValueStore values;
   const auto facts = read_fact_groups(*text, values, sink);
-  const auto code = compile_plan(*text, options.entry, options.interleave, binding, values, sink);
+  const auto code = compile_plan(*text, {options.entry, options.entry_forms}, options.interleave,
+                                 binding, values, sink);
   if (!code || sink.error_count() != errors_before) return sink.already_reported();
   warn_of_idle_designators(*text, *code, binding, values, sink);
   return Explorer(text->data, *code, facts, binding, locator, options, values, sink).explore();

@@ -17,6 +17,8 @@ namespace parallax::compiler {
 
 struct UnrollOptions {
   std::optional<std::string> entry;  // the function to run; see unroll_plan
+  /// Or the file of the plan whose forms at top level run; those of other files do not.
+  std::optional<base::FileId> entry_forms = std::nullopt;
   UnrollLimits limits;
   /// The model's constants and fluents. A name of the plan means the one that is equal up to case,
   /// `-` and `_` (`top-drawer` is `topDrawer`); CPL032 if there is none. Empty: names are taken as

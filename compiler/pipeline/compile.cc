@@ -155,7 +155,12 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, const std::atomic<b
   auto binding = parse_plan_binding(files, input.binding, sink);
   if (!binding) return sink.already_reported();
   UnrollOptions options;
-  options.entry = input.entry;
+  auto plan_texts = input.plan;
+  if (input.entry && input.entry->starts_with('(')) {
+    options.entry_forms = plan_texts.emplace_back(files.add("--plan-entry", *input.entry));
+  } else {
+    options.entry = input.entry;
+  }
   options.limits = input.limits;
   options.interleave = input.interleave;
   options.stop = stop;
@@ -178,7 +183,7 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, const std::atomic<b
   }
   const NoRegions no_regions;
   const PoseLocator& locator = input.locator != nullptr ? *input.locator : no_regions;
-  auto graph = unroll_plan(files, input.plan, *binding, locator, options, sink);
+  auto graph = unroll_plan(files, plan_texts, *binding, locator, options, sink);
   if (!graph || !check_performed(*graph, *binding, model, sink) ||
       !check_regions(*graph, locator, model, sink)) {
     return sink.already_reported();

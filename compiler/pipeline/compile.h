@@ -26,8 +26,8 @@ struct PlanFormulas;
 struct PlanInput {
   std::vector<base::FileId> plan;  // its files in order (load_plan_files)
   base::FileId binding;
-  std::optional<std::string> entry =
-      std::nullopt;                      // the function to run; the default is the last one defined
+  /// The function to run, or a call of it, `(fetch :cup)`; the default is the last one defined.
+  std::optional<std::string> entry = std::nullopt;
   const PoseLocator* locator = nullptr;  // outlives the call; none: there are no regions
   UnrollLimits limits = {};
   bool interleave = false;
