@@ -1,4 +1,5 @@
 // Goals of actions: what is so already needs no action. The model decides where it is performed.
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <utility>
@@ -19,7 +20,9 @@ base::Result<std::optional<FormulaTree>> PerformResolver::goal_formula(ValueId g
     if (!formula) return sink_.already_reported();
     return std::optional(*std::move(formula));
   }
-  if (goals_told_.emplace(source.begin, name).second) {
+  const std::pair told(source, name);
+  if (std::find(unbound_goals_.begin(), unbound_goals_.end(), told) == unbound_goals_.end()) {
+    unbound_goals_.push_back(told);
     sink_.warning(codes::kUnboundGoal, source, name);
   }
   return std::optional<FormulaTree>();

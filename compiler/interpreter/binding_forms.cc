@@ -71,7 +71,7 @@ bool is_part(const FormCompiler& c, DatumId place) {
 /// which order the arguments are computed.
 void change_part(FormCompiler& c, DatumId form, std::string_view macro,
                  std::vector<DatumId> arguments) {
-  c.code.code().gaps.push_back({"changes of shared lists", form});
+  c.code.code().gaps.push_back({"changes of shared lists", form, GapKind::kMeaning});
   arguments.insert(arguments.begin(), symbol_at(c, macro, form));
   c.compile(list_at(c, std::move(arguments), form));
 }

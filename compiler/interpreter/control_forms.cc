@@ -57,7 +57,8 @@ void branches_by_turns(FormCompiler& c, DatumId form, FormItems branches, bool p
 
 void in_order(FormCompiler& c, DatumId form) {
   c.warning(codes::kParallelInOrder, form, c.form_name(form));
-  c.code.code().gaps.push_back({fmt::format("the other orders of `{}`", c.form_name(form)), form});
+  c.code.code().gaps.push_back(
+      {fmt::format("the other orders of `{}`", c.form_name(form)), form, GapKind::kOrder});
 }
 
 void form_par(FormCompiler& c, DatumId form, FormItems items) {

@@ -58,11 +58,8 @@ void handling(FormCompiler& c, DatumId form, const std::vector<HandlerSource>& h
   for (const auto& handler : handlers) {
     const auto unit = compile_handler(c, handler, start);
     for (const auto name : handler.classes) {
-      const auto known = c.failure_class(name);
+      const auto known = c.handled_class(name);
       if (!known) continue;
-      if (*known == "condition" || *known == "t") {
-        c.warning(codes::kBroadHandler, name, *known);
-      }
       // CRAM names the function of a clause by its class: of two with one name the last is called.
       for (auto& clause : table) {
         if (clause.failure_class == *known) clause.unit = unit;
@@ -353,7 +350,7 @@ void form_handler_case(FormCompiler& c, DatumId form, FormItems items) {
     c.code.emit(PlanOp::kExit, 1, exit, clause);
     c.code.leave_unit(PlanOp::kEndHandler, clause);
     for (const auto name : class_list(c, parts[0])) {
-      if (const auto known = c.failure_class(name)) table.push_back({*known, unit});
+      if (const auto known = c.handled_class(name)) table.push_back({*known, unit});
     }
     clauses.emplace_back(exit, parts);
   }

@@ -207,6 +207,8 @@ void FormCompiler::compile_list(DatumId form) {
   }
   if (head->starts_with("check-") && head->ends_with("-collisions")) {
     warning(codes::kProjectionIgnored, form, form_name(form));
+    code.code().gaps.push_back(
+        {fmt::format("what `{}` finds", form_name(form)), form, GapKind::kMeaning});
     check_no_perform(form);
     return nil(form);
   }
@@ -364,6 +366,16 @@ std::optional<std::string> FormCompiler::failure_class(DatumId datum) {
     report.fix(fmt::format("replace `{}` with `{}`", data.name(datum), *near));
   }
   return std::nullopt;
+}
+
+std::optional<std::string> FormCompiler::handled_class(DatumId datum) {
+  auto known = failure_class(datum);
+  if (known == "condition" || known == "t") {
+    warning(codes::kBroadHandler, datum, *known);
+    code.code().gaps.push_back(
+        {fmt::format("what else a handler of `{}` hears", *known), datum, GapKind::kMeaning});
+  }
+  return known;
 }
 
 std::string FormCompiler::form_name(DatumId form) const {

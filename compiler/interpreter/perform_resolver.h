@@ -65,6 +65,10 @@ class PerformResolver {
   /// Formula of the goal, a list, that an action designator has; none, with W-GOAL, if the table
   /// does not bind it. Another error was reported.
   base::Result<std::optional<FormulaTree>> goal_formula(ValueId goal, base::SourceRange source);
+  /// The goals that W-GOAL told of, with the performs that have them, each once.
+  const std::vector<std::pair<base::SourceRange, std::string>>& unbound_goals() const {
+    return unbound_goals_;
+  }
   base::Result<FormulaTree> query_formula(const QueryBinding& query,
                                           std::span<const ValueId> arguments,
                                           base::SourceRange source);
@@ -118,7 +122,7 @@ class PerformResolver {
   const PlanGraph& graph_;
   ValueStore& values_;
   base::DiagnosticSink& sink_;
-  std::set<std::pair<std::uint32_t, std::string>> goals_told_;  // of W-GOAL: once at each place
+  std::vector<std::pair<base::SourceRange, std::string>> unbound_goals_;
 };
 
 }  // namespace parallax::compiler

@@ -14,6 +14,7 @@
 #include "compiler/lisp/lisp_reader.h"
 #include "compiler/plan/failure_classes.h"
 #include "compiler/plan/plan_binding.h"
+#include "compiler/plan/plan_graph.h"
 
 namespace parallax::compiler {
 
@@ -133,10 +134,11 @@ struct ParBranches {
   std::optional<std::uint32_t> exit;  // `pursue`: where the first value goes on
 };
 
-/// Executions that the code does not have.
+/// Where executions of the real plan may differ from those of the code.
 struct CodeGap {
   std::string text;
   DatumId source;
+  GapKind kind = GapKind::kOrder;
 };
 
 struct PlanGlobal {

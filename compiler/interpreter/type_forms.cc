@@ -129,11 +129,8 @@ void form_handler_bind(FormCompiler& c, DatumId form, FormItems items) {
     const auto classes = c.data.head(name) == "or" ? c.data.children(name).subspan(1)
                                                    : c.data.children(binding).first(1);
     for (const auto one : classes) {
-      const auto known = c.failure_class(one);
+      const auto known = c.handled_class(one);
       if (!known) continue;
-      if (*known == "condition" || *known == "t") {
-        c.warning(codes::kBroadHandler, one, *known);
-      }
       table.push_back({*known, unit});
     }
   }

@@ -319,11 +319,17 @@ void Explorer::write_handlers() {
 }
 
 void Explorer::write_gaps() {
-  for (const auto& gap : code_.gaps) graph_.gaps.push_back({gap.text, data_.source(gap.source)});
+  for (const auto& gap : code_.gaps) {
+    graph_.gaps.push_back({gap.text, data_.source(gap.source), gap.kind});
+  }
+  for (const auto& [place, goal] : resolver_.unbound_goals()) {
+    graph_.gaps.push_back({fmt::format("the goal `{}`, which the table does not bind", goal), place,
+                           GapKind::kMeaning});
+  }
   for (const auto form : late_cleanups_) {
     const auto text =
         fmt::format("clean-ups of `{}` among what follows it", data_.head(form).value_or("par"));
-    graph_.gaps.push_back({text, data_.source(form)});
+    graph_.gaps.push_back({text, data_.source(form), GapKind::kOrder});
   }
   const auto by_place = [](const PlanGap& a, const PlanGap& b) {
     return std::pair(a.source.file, a.source.begin) < std::pair(b.source.file, b.source.begin);

@@ -122,10 +122,16 @@ struct PlanHandler {
   bool otherwise = false;  // also handles failures that the plan itself signals or hands on
 };
 
-/// Executions of the real plan that the graph leaves out: a claim about all of them has no proof.
+/// kOrder: orders of branches that the graph leaves out. kMeaning: a form that the graph takes in
+/// another way than the real language may.
+enum class GapKind : std::uint8_t { kOrder, kMeaning };
+
+/// Where executions of the real plan may differ from the graph's: a claim about all of them has no
+/// proof.
 struct PlanGap {
-  std::string text;
+  std::string text;  // a noun: "the other orders of `par`"
   base::SourceRange source;
+  GapKind kind = GapKind::kOrder;
 };
 
 struct PlanGraph {

@@ -238,6 +238,102 @@ TEST_CASE("traces: branches of a plan run in written order, or in every order") 
   CHECK(both["exploration"] == "all traces explored");
 }
 
+TEST_CASE("verify: nothing is proved of a plan of which something is approximated") {
+  const CliFixture cli;
+  cli.write("named.bind",
+            "motion going (:object name ?r) -> Go(?r) ok: RobotIn(?r) @t+1\n"
+            "action picking-up () -> PickUp() ok: Holding() @t+1\n");
+  const std::string go = "(perform (a motion (type going) (object (an object (name r2)))))";
+  const std::vector<std::pair<std::string, std::string>> plans = {
+      {"(let ((l (list 1 2))) (setf (car l) 3) " + go + ")", "changes of shared lists"},
+      {"(unless (check-picking-up-collisions) " + go + ")",
+       "what `check-picking-up-collisions` finds"},
+      {"(perform (a motion (type going) (goal (robot-in r2)) (object (an object (name r2)))))", ""},
+      {"(perform (an action (type picking-up) (goal (object-held box))))",
+       "the goal `object-held`, which the table does not bind"},
+      {"(with-failure-handling ((condition (e) (return))) " + go + ")",
+       "what else a handler of `condition` hears"},
+      {"(handler-case " + go + " (t (e) e))", "what else a handler of `t` hears"}};
+  for (const auto& [text, gap] : plans) {
+    CAPTURE(text);
+    cli.write("plan.lisp", text + "\n");
+    const std::vector<std::string> verify = {"verify",
+                                             "domain.e",
+                                             "start.e",
+                                             "--plan",
+                                             "plan.lisp",
+                                             "--bind",
+                                             "named.bind",
+                                             "--horizon",
+                                             "3",
+                                             "--property",
+                                             "HoldsAt(Holding(),time) | !HoldsAt(Holding(),time)"};
+    const auto claim = cli.parallax(verify);
+    const auto answer = json_of(cli, verify);
+    CHECK(claim.code == 0);
+    CHECK(!answer.contains("every_order"));
+    if (gap.empty()) {  // only actions have goals
+      CHECK(answer["proof"] == "checked");
+      continue;
+    }
+    CHECK(claim.out.starts_with("holds up to horizon 3 (approximated, no proof)"));
+    CHECK(claim.err.find("approximated: " + gap + " at plan.lisp:1") != std::string::npos);
+    CHECK(answer["proof"] == "none");
+    CHECK(answer["approximated"] == true);
+    const auto compiled = cli.parallax({"compile", "domain.e", "start.e", "--plan", "plan.lisp",
+                                        "--bind", "named.bind", "--horizon", "3", "-o", "out.cnf"});
+    CHECK(compiled.code == 2);
+    CHECK(compiled.err.find(gap + ": approximated") != std::string::npos);
+  }
+}
+
+TEST_CASE("verify: nothing is proved of a plan that is cut where an execution comes to") {
+  const CliFixture cli;
+  cli.write("named.bind",
+            "query is-held () ok: Holding() @t\n"
+            "motion going (:object name ?r) -> Go(?r) ok: RobotIn(?r) @t+1\n");
+  const std::string go = "(perform (a motion (type going) (object (an object (name r2)))))";
+  const auto verify = [&](const std::string& text, bool turns) {
+    cli.write("plan.lisp", text + "\n");
+    std::vector<std::string> arguments = {"verify",
+                                          "domain.e",
+                                          "start.e",
+                                          "--plan",
+                                          "plan.lisp",
+                                          "--bind",
+                                          "named.bind",
+                                          "--horizon",
+                                          "3",
+                                          "--property",
+                                          "HoldsAt(Holding(),time) | !HoldsAt(Holding(),time)"};
+    if (turns) arguments.emplace_back("--par=interleave");
+    return json_of(cli, arguments);
+  };
+  const auto asks = verify("(loop until (holds '(is-held)))" + go, false);
+  CHECK(asks["proof"] == "none");
+  CHECK(asks["cut"] == true);
+  CHECK(!asks.contains("every_order"));
+  CHECK(asks["bounds"] == nlohmann::json::array({"bound reached: `loop` at plan.lisp:1:1"}));
+  // Behind the horizon nothing is asked of the loop.
+  const auto later = verify(
+      "(dotimes (i 4) (perform (a motion (type going) (object (an object "
+      "(name r2))))))(loop until (holds '(is-held)))",
+      false);
+  CHECK(later["proof"] == "checked");
+  // A branch that counts its turns where others can see it.
+  const auto sleeps = verify(
+      "(let ((k 0)) (par (dotimes (i 20) (setf k i) (sleep 1)) (progn (sleep 1) " + go + ")))",
+      true);
+  CHECK(sleeps["proof"] == "none");
+  CHECK(sleeps["cut"] == true);
+  CHECK(cli.parallax({"traces", "domain.e", "start.e", "--plan", "plan.lisp", "--bind",
+                      "named.bind", "--horizon", "3", "--limit=0", "--par=interleave"})
+            .out.find("(within the bounds of loops and calls, no proof)") != std::string::npos);
+  // A branch that only sleeps has nothing to count.
+  const auto idle = verify("(par (dotimes (i 200) (sleep 1)) (progn (sleep 1) " + go + "))", true);
+  CHECK(idle["proof"] == "checked");
+}
+
 TEST_CASE("turns of branches that meet again cost their number, not their orders") {
   const CliFixture cli;
   cli.write("named.bind", "motion going (:object name ?r) -> Go(?r) ok: RobotIn(?r) @t+1\n");

@@ -38,6 +38,7 @@ void BestTraces::certify(const CertifyOption& option, const std::vector<std::str
   TraceCertifier certifier(option, models, better ? *better : model, context);
   if (!better) return certifier.decline("the objective has too many different sums");
   certifier.note_gaps(plan, false);
+  if (may_be_cut(model)) certifier.note_cut();
   certifier.conclude(std::string(runtime::to_string(
                          model.has_constraints ? runtime::Exploration::kCompleteUpToBound
                                                : runtime::Exploration::kAllTracesExplored)),

@@ -25,6 +25,30 @@ bool is_whole(const std::string& exploration) { return exploration != "stopped";
 
 }  // namespace
 
+std::string PlanReservations::verdict() const {
+  std::string out;
+  if (orders) out += "not of every order, ";
+  if (meaning) out += "approximated, ";
+  if (cut) out += "within the bounds of loops and calls, ";
+  return out + "no proof";
+}
+
+std::vector<std::pair<std::string, bool>> PlanReservations::fields() const {
+  std::vector<std::pair<std::string, bool>> out;
+  if (orders) out.emplace_back("every_order", false);
+  if (meaning) out.emplace_back("approximated", true);
+  if (cut) out.emplace_back("cut", true);
+  return out;
+}
+
+bool may_be_cut(const runtime::CompiledModel& model) {
+  const compiler::AtomIndex index(model);
+  for (std::size_t cut = 0; cut < model.plan_cuts.size(); ++cut) {
+    if (index.at(compiler::PlanCutId(static_cast<std::uint32_t>(cut)), model.horizon)) return true;
+  }
+  return false;
+}
+
 TraceCertifier::TraceCertifier(const CertifyOption& option, const std::vector<std::string>& models,
                                const runtime::CompiledModel& model, Context& context)
     : option_(option), context_(context) {
@@ -51,8 +75,8 @@ std::unique_ptr<runtime::SatSolver> TraceCertifier::solver() {
 
 void TraceCertifier::conclude(const std::string& exploration, bool searched) {
   if (!files_) return;
-  if (verdict_ == kByParts) {
-    if (option_.keep) decline("the plan has executions that were not explored");
+  if (reservations_.any()) {
+    if (option_.keep) decline("the plan may have executions that were not explored");
     return;
   }
   if (!is_whole(exploration)) return decline("the list was stopped before its end");
@@ -85,17 +109,24 @@ void TraceCertifier::conclude(const std::string& exploration, bool searched) {
 }
 
 void TraceCertifier::rest_on_symmetry() {
-  if (!files_ && verdict_ != kByParts) verdict_ = kBySymmetry;
+  if (!files_ && !reservations_.any()) verdict_ = kBySymmetry;
 }
 
 void TraceCertifier::note_gaps(const std::optional<compiler::PlanGraph>& plan, bool tells) {
   if (!plan || plan->gaps.empty()) return;
-  verdict_ = kByParts;
-  if (!tells) return;
   for (const auto& gap : plan->gaps) {
-    context_.remark(
-        fmt::format("not explored: {} at {}", gap.text, context_.files().place(gap.source)));
+    const bool orders = gap.kind == compiler::GapKind::kOrder;
+    (orders ? reservations_.orders : reservations_.meaning) = true;
+    if (!tells) continue;
+    context_.remark(fmt::format("{}: {} at {}", orders ? "not explored" : "approximated", gap.text,
+                                context_.files().place(gap.source)));
   }
+  verdict_ = reservations_.verdict();
+}
+
+void TraceCertifier::note_cut() {
+  reservations_.cut = true;
+  verdict_ = reservations_.verdict();
 }
 
 std::string TraceCertifier::remark(const std::string& exploration) const {
@@ -104,10 +135,11 @@ std::string TraceCertifier::remark(const std::string& exploration) const {
 
 std::string TraceCertifier::fields() const {
   const bool by_symmetry = verdict_ == kBySymmetry;
-  const bool by_parts = verdict_ == kByParts;
-  const bool none = by_symmetry || by_parts || verdict_ == "no proof";
+  const bool none = by_symmetry || reservations_.any() || verdict_ == "no proof";
   auto out = fmt::format("\"proof\":\"{}\",", none ? "none" : verdict_.substr(6));
-  if (by_parts) out += "\"every_order\":false,";
+  for (const auto& [name, value] : reservations_.fields()) {
+    out += fmt::format("\"{}\":{},", name, value);
+  }
   if (by_symmetry) out += "\"symmetry\":true,";
   if (verdict_ == "proof checked") out += fmt::format("\"proof_origin\":\"{}\",", origin_);
   if (verdict_ == "proof checked" && option_.keep) {

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "compiler/plan/plan_graph.h"
 #include "runtime/certify/certificate.h"
@@ -22,8 +24,23 @@ struct CertifyOption {
 /// The verdict on a claim that rests on an argument by symmetry.
 inline constexpr std::string_view kBySymmetry = "symmetry, not proof checked";
 
-/// The verdict on a claim about a plan of which some executions were not explored.
-inline constexpr std::string_view kByParts = "not of every order, no proof";
+/// Why a claim about a plan has no proof although the search found nothing against it: the real
+/// plan may have executions that were not explored.
+struct PlanReservations {
+  bool orders = false;   // of branches, of which only some were explored
+  bool meaning = false;  // a form that is taken in another way than the real language may
+  bool cut = false;      // a loop or calls that go on beyond their bound
+
+  bool any() const { return orders || meaning || cut; }
+  /// `not of every order, no proof`, `approximated, no proof`, `within the bounds of loops and
+  /// calls, no proof`, or several of them.
+  std::string verdict() const;
+  /// Names of the JSON fields that tell them, each with its value.
+  std::vector<std::pair<std::string, bool>> fields() const;
+};
+
+/// Can control of the plan be where unrolling was cut, for all that its graph says, at the horizon?
+bool may_be_cut(const runtime::CompiledModel& model);
 
 /// The verdict on a claim that was searched by cubes.
 inline constexpr std::string_view kByCubes = "cubes, not proof checked";
@@ -62,7 +79,10 @@ class TraceCertifier {
   void rest_on_symmetry();
   /// Records that the claim has no proof if the plan has gaps, and says which unless that was said.
   void note_gaps(const std::optional<compiler::PlanGraph>& plan, bool tells = true);
-  /// `no proof`, `not of every order, no proof`, `symmetry, not proof checked`, `proof checked`,
+  /// Records that the claim has no proof: some execution comes to where unrolling was cut.
+  void note_cut();
+  const PlanReservations& reservations() const { return reservations_; }
+  /// `no proof`, what PlanReservations says, `symmetry, not proof checked`, `proof checked`,
   /// `proof not accepted` or `proof not checked`.
   const std::string& verdict() const { return verdict_; }
   std::string proof_file() const { return files_ ? files_->proof_path().string() : ""; }
@@ -79,6 +99,7 @@ class TraceCertifier {
   Context& context_;
   std::optional<runtime::ProofFiles> files_;
   std::optional<runtime::CompletenessClaim> claim_;
+  PlanReservations reservations_;
   std::string verdict_ = "no proof", origin_;
 };
 

@@ -207,6 +207,7 @@ Ending list_plan_traces(const SearchOptions& options, const compiler::CompiledMo
   ending.exploration = runtime::to_string(enumerator.exploration());
   ending.complete = enumerator.exploration() == runtime::Exploration::kAllTracesExplored;
   ending.bounds = open_end_texts(model, enumerator.open_ends());
+  if (!enumerator.open_ends().cuts.empty()) certifier.note_cut();
   ending.dead_end = enumerator.dead_end();
   ending.searched = true;
   return ending;
@@ -216,6 +217,8 @@ std::optional<Ending> list_model_traces(const SearchOptions& options,
                                         const compiler::CompiledModel& model,
                                         TraceCertifier& certifier, TraceWriter& writer,
                                         Context& context) {
+  // Without constraints executions that were cut are in the list like others.
+  if (may_be_cut(model)) certifier.note_cut();
   if (options.sample > 0) return draw(options, model, writer, context);
   auto query = query_of(options, context);
   query.order = order_of(options, certifier, false);

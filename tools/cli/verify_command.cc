@@ -45,12 +45,14 @@ struct CheckedProperty {
   std::optional<runtime::OpenAtoms> open;
   runtime::Exploration exploration = runtime::Exploration::kStopped;
   std::vector<std::string> bounds;
+  bool cut = false;                             // some execution comes to where unrolling was cut
   std::optional<compiler::Timepoint> dead_end;  // length of a violating prefix that cannot go on
-  bool by_symmetry = false;  // the search for violations covered representatives only
-  bool by_cubes = false;     // it was searched by cubes, without a log
-  std::string proof;         // "proof checked"; empty where there is nothing to prove
-  std::string proof_origin;  // what made it, if it was accepted
-  std::string proof_file;    // where it is kept
+  bool by_symmetry = false;       // the search for violations covered representatives only
+  bool by_cubes = false;          // it was searched by cubes, without a log
+  std::string proof;              // "proof checked"; empty where there is nothing to prove
+  PlanReservations reservations;  // why nothing was proved
+  std::string proof_origin;       // what made it, if it was accepted
+  std::string proof_file;         // where it is kept
   std::optional<std::vector<RestsOn>> rests_on;  // none: no ledger was named
   std::optional<PropertyBreak> broken;           // of a temporal property
 };
@@ -68,6 +70,7 @@ CheckedProperty ask(const compiler::CompiledModel& model,
   answer.violation = enumerator.next();
   answer.exploration = enumerator.exploration();
   answer.bounds = open_end_texts(model, enumerator.open_ends());
+  answer.cut = !enumerator.open_ends().cuts.empty();
   answer.dead_end = enumerator.dead_end();
   answer.by_symmetry = enumerator.by_symmetry();
   return answer;
@@ -229,9 +232,9 @@ std::string answer_json(const compiler::CompiledModel& model, const CheckedPrope
                                  {"words", rests_on_words(one)}});
     }
   }
-  if (answer.proof == kByParts) {
+  if (answer.reservations.any()) {
     out["proof"] = "none";
-    out["every_order"] = false;
+    for (const auto& [name, value] : answer.reservations.fields()) out[name] = value;
   } else if (answer.proof == kBySymmetry) {
     out["proof"] = "none";
     out["symmetry"] = true;
@@ -289,8 +292,10 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
     return 0;
   }
   const bool holds = !answer.violation && answer.exploration != runtime::Exploration::kStopped;
-  if (holds && certifier.verdict() == kByParts) {
-    answer.proof = kByParts;
+  if (holds && answer.cut) certifier.note_cut();
+  if (holds && certifier.reservations().any()) {
+    answer.reservations = certifier.reservations();
+    answer.proof = certifier.verdict();
   } else if (holds && answer.by_symmetry) {
     answer.proof = kBySymmetry;
   } else if (holds && answer.by_cubes) {
