@@ -41,11 +41,12 @@ class Explorer {
  public:
   Explorer(const LispData& data, const PlanCode& code, const FactBase& facts,
            const PlanBinding& binding, const PoseLocator& locator, const UnrollOptions& options,
-           ValueStore& values, base::DiagnosticSink& sink)
+           bool up_to_horizon, ValueStore& values, base::DiagnosticSink& sink)
       : data_(data),
         code_(code),
         binding_(binding),
         options_(options),
+        up_to_horizon_(up_to_horizon),
         values_(values),
         sink_(sink),
         machine_(code, data, options.limits, options.stop, values, sink),
@@ -56,6 +57,8 @@ class Explorer {
             [this](const StopQuestion& stop) { return guard_of(stop); }, values, sink) {}
 
   base::Result<PlanGraph> explore();
+  /// The graph was larger than the limit, which was not reported, as a part of it may do.
+  bool wants_horizon() const { return wants_horizon_; }
 
  private:
   using StateKey = std::vector<std::uint32_t>;
@@ -66,6 +69,7 @@ class Explorer {
   std::optional<PlanTarget> advance(Job& job);
   std::optional<PlanTarget> stopped(PlanState& state, const PlanStop& stop);
   bool has_room(const StateKey& key, DatumId form);
+  std::optional<Job> next_job();
   std::optional<PlanTarget> perform(PlanState& state, const StopPerform& stop);
   void fail_by_reason(LocationId id, const PlanState& state, DatumId form);
   std::optional<PlanStop> run_plan(PlanState& state, const StopPerform& stop,
@@ -107,6 +111,7 @@ class Explorer {
   const PlanCode& code_;
   const PlanBinding& binding_;
   const UnrollOptions& options_;
+  bool up_to_horizon_;
   ValueStore& values_;
   base::DiagnosticSink& sink_;
   PlanGraph graph_;
@@ -114,6 +119,7 @@ class Explorer {
   PerformResolver resolver_;
   RuleProofs rules_;
   std::vector<Job> jobs_;
+  std::map<std::uint32_t, std::vector<Job>> later_;  // by performs before; up to the horizon
   std::map<StateKey, LocationId> locations_;
   std::map<std::pair<StateKey, FormulaTree>, BranchId> branches_;
   std::map<StateKey, BranchId> references_;
@@ -124,7 +130,9 @@ class Explorer {
   std::map<std::uint32_t, PlanHandler> handlers_;  // by unit: what they take up
   bool failed_ = false;
   std::size_t key_words_ = 0;
-  bool full_ = false;  // the limit of locations was reached and reported
+  std::map<DatumId, std::size_t> states_;  // by form
+  bool full_ = false;                      // the limit of locations was reached
+  bool wants_horizon_ = false;
 };
 
 }  // namespace parallax::compiler

@@ -85,17 +85,42 @@ std::vector<base::SourceRange> Explorer::calls(const PlanState& state) const {
 
 /// Deep calls make large states: not only their number is limited.
 bool Explorer::has_room(const StateKey& key, DatumId form) {
-  constexpr std::size_t kMaxWords = 8'000'000;
+  constexpr std::size_t kWords = 400;  // for each location
   key_words_ += key.size();
+  ++states_[form];
   const auto limit = static_cast<std::size_t>(options_.limits.max_locations);
+  const auto words = std::max(std::size_t{20'000}, limit) * kWords;
   const bool many = graph_.locations.size() >= limit;
-  if (!many && key_words_ <= kMaxWords) return true;
-  if (!full_) {
-    sink_.error(codes::kUnrollLimit, data_.source(form), many ? limit : kMaxWords,
-                many ? "locations" : "words for the states of its calls");
-  }
+  if (!many && key_words_ <= words) return true;
+  if (full_) return false;
   full_ = true;
+  wants_horizon_ = !up_to_horizon_ && options_.horizon;
+  if (wants_horizon_) return false;
+  const auto most =
+      std::max_element(states_.begin(), states_.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  sink_
+      .error(codes::kUnrollLimit, data_.source(form), many ? limit : words,
+             many ? "locations" : "words for the states of its calls")
+      .note(data_.source(most->first),
+            fmt::format("most of its states, {}, begin at this `{}`: with other variables, from "
+                        "other calls or with other branches on their way",
+                        most->second, data_.head(most->first).value_or("form")));
   return false;
+}
+
+/// The one that was found last; up to a horizon one with the fewest performs before it.
+std::optional<Job> Explorer::next_job() {
+  if (up_to_horizon_) {
+    for (auto& job : jobs_) later_[job.state.performs].push_back(std::move(job));
+    jobs_.clear();
+  }
+  auto& open = up_to_horizon_ && !later_.empty() ? later_.begin()->second : jobs_;
+  if (open.empty()) return std::nullopt;
+  auto job = std::move(open.back());
+  open.pop_back();
+  if (up_to_horizon_ && open.empty()) later_.erase(later_.begin());
+  return job;
 }
 
 std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform& stop) {
@@ -340,13 +365,17 @@ void Explorer::write_gaps() {
 base::Result<PlanGraph> Explorer::explore() {
   if (!machine_.run_definitions()) return sink_.already_reported();
   jobs_.push_back({machine_.start(), {}, {}, Job::Edge::kEntry, 0});
-  while (!jobs_.empty() && !full_) {
-    auto job = std::move(jobs_.back());
-    jobs_.pop_back();
-    const auto target = advance(job);
+  while (!full_) {
+    auto job = next_job();
+    if (!job) break;
+    if (up_to_horizon_ && std::int64_t{job->state.performs} > *options_.horizon) {
+      set(*job, terminal(TerminalKind::kBound, "horizon", std::nullopt));
+      continue;
+    }
+    const auto target = advance(*job);
     note_handlers(std::nullopt);
     if (target) {
-      set(job, *target);
+      set(*job, *target);
     } else {
       failed_ = true;
       if (!machine_.has_room()) break;
@@ -354,6 +383,7 @@ base::Result<PlanGraph> Explorer::explore() {
   }
   if (failed_) return sink_.already_reported();
   write_handlers();
+  if (wants_horizon_) return PlanGraph();  // a part of no use
   write_gaps();
   return std::move(graph_);
 }
@@ -409,7 +439,15 @@ base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files,
                                  binding, values, sink);
   if (!code || sink.error_count() != errors_before) return sink.already_reported();
   warn_of_idle_designators(*text, *code, binding, values, sink);
-  return Explorer(text->data, *code, facts, binding, locator, options, values, sink).explore();
+  const auto explorer = [&](bool up_to_horizon) {
+    return Explorer(text->data, *code, facts, binding, locator, options, up_to_horizon, values,
+                    sink);
+  };
+  auto whole = explorer(false);
+  auto graph = whole.explore();
+  if (!whole.wants_horizon()) return graph;
+  if (sink.error_count() != errors_before) return sink.already_reported();
+  return explorer(true).explore();
 }
 
 }  // namespace parallax::compiler

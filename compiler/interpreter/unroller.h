@@ -34,12 +34,16 @@ struct UnrollOptions {
   bool failures_by_reason = false;
   bool interleave = false;  // explore every order of the performs in branches of `par`
   const std::atomic<bool>* stop = nullptr;  // raised to end it early: CPL054
+  /// What begins later need not be unrolled, where the whole has too many locations. None: all of
+  /// it is wanted.
+  std::optional<std::int64_t> horizon = std::nullopt;
 };
 
 /// Runs the plan on its static values and forks where the model decides: at the outcome of every
 /// `perform`, at `holds` and at comparisons with detected objects. Paths that reach the same
 /// perform in the same state are merged, so the graph's size follows the plan's states, not its
-/// paths. What a bound cut off ends in a kBound terminal.
+/// paths. What a bound cut off ends in a kBound terminal. A plan of more locations than the limit
+/// is unrolled again, the shortest ways first and only up to the horizon, if there is one.
 ///
 /// The plan is the function `entry`; without it the bare top-level forms in order; without those
 /// the last function defined. Several files are one plan, read in their order. Reports CPL0xx

@@ -164,6 +164,8 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, const std::atomic<b
   options.limits = input.limits;
   options.interleave = input.interleave;
   options.stop = stop;
+  const auto& time = model.sorts[*model.core.time];
+  if (time.ranges.size() == 1) options.horizon = time.ranges[0].upper;
   options.failures_by_reason = input.failures_by_reason;
   for (const auto& object : model.objects) options.constants.push_back(object.name);
   for (const auto& symbol : model.symbols) {

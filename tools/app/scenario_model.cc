@@ -258,6 +258,9 @@ base::Status add_plan(const ModelOptions& options, std::optional<harness::Scenar
                                    .limits = options.unroll,
                                    .interleave = options.par == "interleave",
                                    .max_horizon = options.max_horizon};
+  constexpr std::int64_t kSteps = 250;  // for each location
+  auto& limits = input.plan->limits;
+  limits.max_steps = std::max(limits.max_steps, kSteps * limits.max_locations);
   if (!options.plan_entry.empty()) input.plan->entry = options.plan_entry;
   return base::Unit{};
 }

@@ -51,7 +51,8 @@ void add_plan_options(OptionTable& command, ModelOptions& options) {
   command.option("--bind", options.bind, "What the plan's designators mean")
       .needs("--plan")
       .file({"bind"});
-  command.option("--plan-entry", options.plan_entry, "The plan's function to run").needs("--plan");
+  command.option("--plan-entry", options.plan_entry, "The plan's function to run, or a call of it")
+      .needs("--plan");
   command.option("--regions", options.regions, "Scenario whose regions the plan's poses lie in")
       .needs("--plan")
       .file({"yaml"});
@@ -62,6 +63,11 @@ void add_plan_options(OptionTable& command, ModelOptions& options) {
       .show_default();
   command.option("--max-call-depth", options.unroll.max_call_depth, "Active calls of one function")
       .check(WholeNumber{1, 1'000})
+      .show_default();
+  command
+      .option("--max-locations", options.unroll.max_locations,
+              "Locations of the unrolled plan; steps and memory grow with them")
+      .check(WholeNumber{1, 10'000'000})
       .show_default();
   command
       .option("--location-samples", options.unroll.location_samples,

@@ -220,6 +220,29 @@ TEST_CASE("codes: limits of unrolling are reported") {
   UnrollOptions options;
   options.limits.max_locations = 5;
   CHECK(unroll(prelude() + "(dotimes (i 10) (sig))", options).codes() == Strings{"CPL051"});
+  // The form that most of them begin at is named.
+  const auto nested = unroll(prelude() + "(go1)(dotimes (i 10) (sig))", options);
+  REQUIRE(nested.codes() == Strings{"CPL051"});
+  REQUIRE(!nested.sink.sorted()[0].notes.empty());
+  CHECK(nested.sink.sorted()[0].notes[0].text.find("most of its states, 5, begin at this "
+                                                   "`perform`") == 0);
+  // Up to a horizon fewer are needed, and the shortest ways to them come first.
+  options.horizon = 4;
+  const auto part =
+      unroll(prelude() +
+                 "(with-failure-handling ((plan-failure (e) (return))) (go1) (go1) (go1))"
+                 "(dotimes (i 10) (sig))",
+             options);
+  CHECK(part.codes() == Strings{"CPL051"});
+  options.limits.max_locations = 12;
+  const auto whole =
+      unroll(prelude() +
+                 "(with-failure-handling ((plan-failure (e) (return))) (go1) (go1) (go1))"
+                 "(dotimes (i 10) (sig))",
+             options);
+  REQUIRE(whole.codes().empty());
+  CHECK(whole.terminals() == Strings{"BOUND(horizon)", "FAILED(simple-plan-failure)"});
+  CHECK(whole.events("++++").size() == 5);
   options = {};
   options.limits.max_steps = 1000;
   CHECK(unroll("(dotimes (i 1000000) i)", options).codes() == Strings{"CPL051"});
