@@ -154,7 +154,9 @@ std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform&
   ++state.performs;
   state.missed = state.slept = state.asleep = 0;
   // The last job is taken first: success.
-  if (graph_.locations[id].failures.empty()) {
+  if (entry->always) {
+    graph_.locations[id].on_failure = terminal(TerminalKind::kNever, {}, std::nullopt);
+  } else if (graph_.locations[id].failures.empty()) {
     jobs_.push_back({state, failure, {}, Job::Edge::kFailure, id.index(), id});
   } else {
     fail_by_reason(id, state, stop.form);
@@ -381,9 +383,9 @@ base::Result<PlanGraph> Explorer::explore() {
       if (!machine_.has_room()) break;
     }
   }
+  if (wants_horizon_) return PlanGraph();  // a part of no use
   if (failed_) return sink_.already_reported();
   write_handlers();
-  if (wants_horizon_) return PlanGraph();  // a part of no use
   write_gaps();
   return std::move(graph_);
 }

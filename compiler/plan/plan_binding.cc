@@ -293,6 +293,12 @@ bool BindingParser::parse_formula(BindingEntry& entry) {
   if (!at_.take("ok:")) return at_.expected("`ok:` and the formula of success");
   at_.skip_blanks();
   const auto begin = at_.position();
+  if (at_.take_word("always")) {
+    entry.always = true;
+    entry.formula_source = at_.range(begin, at_.position());
+    entry.formula = equal_terms(constant_term("0"), constant_term("0"));
+    return true;
+  }
   while (!at_.at_end() && at_.peek() != '@') at_.advance();
   auto stop = at_.position();
   while (stop > begin && base::is_space(at_.text()[stop - 1])) --stop;
@@ -315,10 +321,12 @@ bool BindingParser::parse_tail(BindingEntry& entry) {
   for (;;) {
     at_.skip_blanks();
     if (at_.at_end()) return true;
-    if (at_.take_word("returns")) {
+    if (!entry.always && at_.take_word("returns")) {
       std::string variable;
       if (!at_.name("the variable that is returned", variable)) return false;
       entry.returns = std::move(variable);
+    } else if (entry.always) {
+      return at_.expected("the next entry, as what always succeeds finds nothing and never fails,");
     } else if (at_.take_word("else")) {
       const auto begin = (at_.skip_blanks(), at_.position());
       if (!at_.name("a failure class", entry.failure_class)) return false;

@@ -47,6 +47,7 @@ struct BindingEntry {
   std::vector<FormulaTree> event_arguments;
   FormulaTree formula;
   std::int32_t time_offset = 0;        // @t: 0, @t+1: 1
+  bool always = false;                 // `ok: always`: it cannot fail
   std::optional<std::string> returns;  // the quantified variable of the formula that is the result
   std::string failure_class = "simple-plan-failure";
   std::vector<FailureReason> reasons;       // empty: every failure is of `failure_class`

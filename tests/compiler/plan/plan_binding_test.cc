@@ -125,6 +125,20 @@ TEST_CASE("binding: mistakes are located, several per run") {
   }
 }
 
+TEST_CASE("binding: what always succeeds has no failure") {
+  const auto table = std::string("action parking -> Park() ok: always\n") + std::string(kBinding);
+  CHECK(errors(read_table(table)).empty());
+  const auto plan = unroll(prelude() + "(perform (an action (type parking)))(go1)", {}, table);
+  REQUIRE(plan.codes().empty());
+  CHECK(plan.events("++") == Strings{"Park()", "Go(r1)", "DONE"});
+  CHECK(plan.target(plan.graph->locations[LocationId(0)].on_failure) == "NEVER");
+  for (const auto* tail : {"else plan-failure", "on slipped plan-failure", "returns i"}) {
+    CAPTURE(tail);
+    CHECK(errors(read_table("action parking -> Park() ok: always " + std::string(tail)))
+              .find("E4001 1:37 expected the next entry, as what always succeeds") == 0);
+  }
+}
+
 TEST_CASE("binding: no prefix of the table crashes the parser") {
   for (std::size_t length = 0; length < kBinding.size(); length += 3) {
     const auto bound = read_table(kBinding.substr(0, length));
