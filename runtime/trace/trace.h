@@ -63,6 +63,8 @@ struct Trace {
   std::vector<std::string> predicates;  // true atoms of user predicates, sorted
   /// Number of traces that symmetries make of this one, in decimal, if it stands for them.
   std::string orbit;
+  /// How the plan ended, as PlanEnds says it; empty where nobody asked.
+  std::string ended;
   /// Do other initial states lead to the same events? This one is the first in canonical order.
   base::Known other_initial_states = base::Known::kNo;
   /// Can the same events from the same initial state also end in other states?

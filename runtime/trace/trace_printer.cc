@@ -97,6 +97,13 @@ std::string without_end(std::string line) {
   return line;
 }
 
+/// The object on this line with how the plan ended.
+std::string with_ending(std::string object, const Trace& trace) {
+  if (trace.ended.empty()) return object;
+  object.pop_back();
+  return object + ",\"ended\":" + base::json_text(nlohmann::json(trace.ended)) + '}';
+}
+
 }  // namespace
 
 const TraceFormat& text_format() {
@@ -127,15 +134,19 @@ std::string format_trace(const TraceFormat& format, const Trace& trace, const st
   return out + format.tail(trace.predicates);
 }
 
-std::string to_text(const Trace& trace) { return format_trace(text_format(), trace); }
+std::string to_text(const Trace& trace) {
+  auto out = format_trace(text_format(), trace);
+  if (!trace.ended.empty()) out += "  plan ended: " + trace.ended + '\n';
+  return out;
+}
 
 std::string to_jsonl(const Trace& trace) {
-  return without_end(format_trace(jsonl_format(), trace));
+  return with_ending(without_end(format_trace(jsonl_format(), trace)), trace);
 }
 
 std::string observable_jsonl(const Trace& trace) {
   static const JsonlFormat kFormat(false);
-  return without_end(format_trace(kFormat, trace));
+  return with_ending(without_end(format_trace(kFormat, trace)), trace);
 }
 
 }  // namespace parallax::runtime

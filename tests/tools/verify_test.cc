@@ -341,10 +341,10 @@ TEST_CASE("turns of branches that meet again cost their number, not their orders
   cli.write("plan.lisp", "(let ((k 0)) (par " + branch + branch + branch + "))\n" +
                              "(perform (a motion (type going) (object (an object (name r2)))))\n");
   // 756,756 orders of 216 states.
-  const auto answer = json_of(
-      cli, {"verify", "domain.e", "start.e", "--plan", "plan.lisp", "--bind", "named.bind",
-            "--horizon", "2", "--par=interleave", "--time-limit=20", "--property",
-            "HoldsAt(Holding(),time) | !HoldsAt(Holding(),time)"});
+  const auto answer =
+      json_of(cli, {"verify", "domain.e", "start.e", "--plan", "plan.lisp", "--bind", "named.bind",
+                    "--horizon", "2", "--par=interleave", "--time-limit=20", "--property",
+                    "HoldsAt(Holding(),time) | !HoldsAt(Holding(),time)"});
   CHECK(answer["proof"] == "checked");
 }
 
@@ -367,6 +367,78 @@ TEST_CASE("the entry of a plan may be a call with arguments") {
   CHECK(entry("visit").err.find("--plan-entry \"(visit ...)\"") != std::string::npos);
   CHECK(entry("(visit ?x)").err.find("--plan-entry:1:8-9: error[CPL004]") != std::string::npos);
   CHECK(entry("(visit").err.find("--plan-entry:1:1: error[CPL001]") != std::string::npos);
+}
+
+TEST_CASE("traces tell how the plan ended") {
+  const CliFixture cli;
+  cli.write("named.bind", "action picking-up () -> PickUp() ok: Holding() @t+1 else lost\n");
+  cli.write("plan.lisp",
+            "(define-condition lost (plan-failure) ())\n"
+            "(with-retry-counters ((n 1))\n"
+            "  (with-failure-handling ((lost (e) (do-retry n (retry))))\n"
+            "    (perform (an action (type picking-up)))))\n"
+            "(perform (an action (type picking-up)))\n");
+  const auto traces = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"traces", "domain.e",   "--plan",      "plan.lisp",
+                                          "--bind", "named.bind", "--horizon=2", "--limit=0"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  const auto all = json_of(cli, traces({}));
+  std::map<std::string, int> ends;
+  for (const auto& trace : all["list"]) ++ends[trace["ended"].get<std::string>()];
+  REQUIRE(ends.size() == 3);
+  int found = 0;
+  for (const auto& [end, number] : ends) {
+    CHECK((end == "done" || end == "FAILED(lost)" || end == "cut"));
+    const auto wanted = end == "FAILED(lost)" ? "failed" : end;
+    const auto some = json_of(cli, traces({"--ended", wanted}));
+    CHECK(some["traces"] == number);
+    CHECK(json_of(cli, traces({"--ended", wanted, "--count"}))["traces"] == number);
+    for (const auto& trace : some["list"]) CHECK(trace["ended"] == end);
+    const auto text = cli.parallax(traces({"--ended", wanted})).out;
+    CHECK(text.find("\n  plan ended: " + end + "\n") != std::string::npos);
+    found += number;
+  }
+  CHECK(all["traces"] == found);
+  // The same events, and a predicate that nothing shows decides how it ends.
+  cli.write("silent.e", "predicate Lucky()\nevent Tick()\nfluent On()\n!HoldsAt(On(),0).\n");
+  cli.write("silent.bind", "query lucky () ok: Lucky() @t\naction a -> Tick() ok: always\n");
+  cli.write("silent.lisp",
+            "(perform (an action (type a)))\n(unless (holds '(lucky)) (fail 'plan-failure))\n");
+  const auto silent = json_of(cli, {"traces", "silent.e", "--plan", "silent.lisp", "--bind",
+                                    "silent.bind", "--horizon=2", "--limit=0"});
+  REQUIRE(silent["traces"] == 1);
+  CHECK(silent["list"][0]["ended"] == "done or FAILED(plan-failure)");
+  // A trace that ends in a hit while the plan goes on does not say how that ends.
+  const auto hit = json_of(cli, traces({"--until", "HoldsAt(Holding(),time)"}));
+  for (const auto& trace : hit["list"]) CHECK(trace.value("ended", "") != "cut");
+  CHECK(cli.parallax({"traces", "domain.e", "--horizon=2", "--ended=done"}).code == 2);
+}
+
+TEST_CASE("verify: a violation says what of the model the plan asked for") {
+  const CliFixture cli;
+  cli.write("kinds.e",
+            "sort item\nitem cup, jar\npredicate Fragile(item)\npredicate Blue(item)\n"
+            "fluent Held(item)\nevent Take(item)\n"
+            "[item,time] Initiates(Take(item),Held(item),time).\n"
+            "[item] !HoldsAt(Held(item),0).\n");
+  cli.write("kinds.bind",
+            "query fragile (?o) ok: Fragile(?o) @t\n"
+            "action taking (:object ?o) -> Take(?o) ok: Held(?o) @t+1\n");
+  cli.write("kinds.lisp",
+            "(when (holds '(fragile cup)) (perform (an action (type taking) (object cup))))\n");
+  const std::vector<std::string> verify = {"verify",      "kinds.e",    "--plan",
+                                           "kinds.lisp",  "--bind",     "kinds.bind",
+                                           "--horizon=1", "--property", "!HoldsAt(Held(cup),time)"};
+  const auto answer = json_of(cli, verify, 1);
+  REQUIRE(answer.contains("inputs"));
+  const auto inputs = answer["inputs"].get<std::vector<std::string>>();
+  CHECK(std::find(inputs.begin(), inputs.end(), "Fragile(cup)") != inputs.end());
+  for (const auto& atom : inputs) CHECK(atom.starts_with("Fragile("));
+  CHECK(answer["trace"]["ended"] == "done");
+  CHECK(cli.parallax(verify).out.find("of what the plan asks for,\n  Fragile(cup)\n") !=
+        std::string::npos);
 }
 
 TEST_CASE("a loop of `go` around a question ends at its bound") {

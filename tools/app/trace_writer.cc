@@ -48,7 +48,27 @@ bool TraceWriter::print(const runtime::Trace& trace) {
   return true;
 }
 
-void TraceWriter::write(const runtime::Trace& trace) {
+TraceWriter::TraceWriter(Form form, TraceCheck* check, TraceCertifier& certifier, Context& context)
+    : form_(std::move(form)), check_(check), certifier_(certifier), context_(context) {
+  if (form_.listing != nullptr) context_.result(form_.listing->begin());
+  const bool shows = !form_.count_only || !form_.ended.empty();
+  if (form_.plan == nullptr || !shows) return;
+  ends_.emplace(*form_.plan, runtime::make_cadical_solver(&context_.stop()), form_.all_hits);
+}
+
+bool TraceWriter::is_wanted(const std::string& ended) const {
+  if (form_.ended.empty()) return true;
+  const auto wanted = form_.ended == "failed" ? std::string(" FAILED(") : " " + form_.ended;
+  return (" " + ended).find(wanted) != std::string::npos;
+}
+
+void TraceWriter::write(const runtime::Trace& given) {
+  auto trace = given;
+  if (ends_) trace.ended = ends_->of(trace);
+  if (!is_wanted(trace.ended)) {
+    certifier_.add(trace);
+    return;
+  }
   if (!print(trace)) {
     cut_short_ = true;
     return;
@@ -61,8 +81,8 @@ void TraceWriter::write(const runtime::Trace& trace) {
 /// Traces as such are needed for checks, for a proof, for the document, for other formats, and
 /// where they may leave atoms open.
 bool TraceWriter::needs_traces() {
-  if (check_ != nullptr || certifier_.is_asked() || form_.count_only || form_.listing != nullptr ||
-      context_.form().json) {
+  if (check_ != nullptr || certifier_.is_asked() || ends_ || form_.count_only ||
+      form_.listing != nullptr || context_.form().json) {
     return true;
   }
   if (form_.open_atoms == nullptr) return false;

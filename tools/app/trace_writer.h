@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "runtime/enumerate/open_atom_finder.h"
+#include "runtime/enumerate/plan_ends.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/enumerate/trace_source.h"
 #include "runtime/trace/trace_format.h"
@@ -28,12 +30,14 @@ class TraceWriter {
     runtime::OpenAtomFinder* open_atoms = nullptr;
     /// Where the finder gives up, prints the trace and claims nothing of atoms that may be open.
     bool prints_unsettled = false;
+    /// The model whose plan's end the traces tell; null: none. It outlives the writer.
+    const compiler::CompiledModel* plan = nullptr;
+    bool all_hits = false;  // as in PlanEnumeratorOptions
+    /// Prints only traces whose plan may have ended like this: `done`, `failed`, `cut`; empty: all.
+    std::string ended = {};
   };
   /// `check` may be null; else it outlives the writer, as the others do.
-  TraceWriter(Form form, TraceCheck* check, TraceCertifier& certifier, Context& context)
-      : form_(std::move(form)), check_(check), certifier_(certifier), context_(context) {
-    if (form_.listing != nullptr) context_.result(form_.listing->begin());
-  }
+  TraceWriter(Form form, TraceCheck* check, TraceCertifier& certifier, Context& context);
 
   bool full() const { return !form_.count_only && form_.limit > 0 && count_ == form_.limit; }
   /// Prints the trace and counts it.
@@ -53,6 +57,7 @@ class TraceWriter {
 
  private:
   const runtime::TraceFormat& format() const;
+  bool is_wanted(const std::string& ended) const;
   bool print(const runtime::Trace& trace);
   bool needs_traces();
 
@@ -60,6 +65,7 @@ class TraceWriter {
   TraceCheck* check_;
   TraceCertifier& certifier_;
   Context& context_;
+  std::optional<runtime::PlanEnds> ends_;
   std::int64_t count_ = 0;
   bool cut_short_ = false;
   std::string list_;

@@ -26,6 +26,7 @@ struct TracesOptions {
   SearchOptions search;
   bool count = false;
   bool expect_traces = false;
+  std::string ended;
   bool check = false;
   ListingOptions listing;
   ReplayTracesOptions replay;
@@ -71,7 +72,7 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
     in_all = fmt::format(" up to symmetry, {} in all{}", ending.in_all, stopped ? " so far" : "");
   }
   const bool complete = ending.complete && !certifier.refuted();
-  if (complete && writer.count() == 0 && options.search.from == 1) {
+  if (complete && writer.count() == 0 && options.search.from == 1 && options.ended.empty()) {
     point_to_explanation(options, invocation);
   }
   const auto timing = fmt::format("\"timing\":{{\"wall_s\":{:.3f}}}", wall_s);
@@ -191,8 +192,12 @@ bool is_usable(const TracesOptions& options, Invocation& invocation) {
                   "--up-to-symmetry says for how many traces each one stands, which only "
                   "--format text and jsonl can");
   }
-  if (options.search.up_to_symmetry && (options.model.best || !options.model.minimize.empty())) {
+  const bool optimizes = options.model.best || !options.model.minimize.empty();
+  if (options.search.up_to_symmetry && optimizes) {
     return refuse("--up-to-symmetry", "does not go with --minimize or --best");
+  }
+  if (!options.ended.empty() && (options.search.up_to_symmetry || optimizes)) {
+    return refuse("--ended", "does not go with --up-to-symmetry, --minimize or --best");
   }
   if (options.model.best && !options.model.minimize.empty()) {
     return refuse("--best", "takes the model's own objectives; it does not go with --minimize");
@@ -201,12 +206,6 @@ bool is_usable(const TracesOptions& options, Invocation& invocation) {
     return refuse("", "--count does not go with --from");
   }
   return true;
-}
-
-/// Does it use options for models without a plan? Those with a plan do not support them.
-bool asks_for_models(const TracesOptions& options) {
-  return options.search.sample > 0 || options.search.from > 1 || options.distinct_given ||
-         options.search.strategy != "auto";
 }
 
 int replay(const TracesOptions& options, Invocation& invocation) {
@@ -221,13 +220,13 @@ int replay(const TracesOptions& options, Invocation& invocation) {
     invocation.remark("the file does not say how its list ended: there may be more traces");
   }
   if (invocation.stopped()) invocation.remark("stopped before the last trace");
-  const auto agree = result->seen - result->failed;
   if (as_json) {
     invocation.document(replay_document(*result, files));
   } else {
-    invocation.result(fmt::format(
-        "{} replayed, {}: {} agree, {} fail, {} checked\n", base::counted(result->seen, "trace"),
-        result->finished ? "complete" : "stopped", agree, result->failed, result->checked));
+    invocation.result(fmt::format("{} replayed, {}: {} agree, {} fail, {} checked\n",
+                                  base::counted(result->seen, "trace"),
+                                  result->finished ? "complete" : "stopped",
+                                  result->seen - result->failed, result->failed, result->checked));
   }
   if (!result->sound) return 5;
   if (result->failed > 0) return 1;
@@ -235,7 +234,6 @@ int replay(const TracesOptions& options, Invocation& invocation) {
 }
 
 using StartTime = std::chrono::steady_clock::time_point;
-
 double seconds_since(StartTime start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -256,10 +254,14 @@ bool names_open_atoms(const TracesOptions& options, const compiler::CompiledMode
 }
 
 /// `open_atoms` may be null.
-TraceWriter::Form form_of(const TracesOptions& options, runtime::ListFormat* listing,
-                          runtime::OpenAtomFinder* open_atoms) {
-  return {options.listing.format, options.count,
-          options.search.sample > 0 ? 0 : options.search.limit, listing, open_atoms};
+TraceWriter::Form form_of(const TracesOptions& options, const compiler::CompiledModel& model,
+                          runtime::ListFormat* listing, runtime::OpenAtomFinder* open_atoms) {
+  const auto limit = options.search.sample > 0 ? 0 : options.search.limit;
+  TraceWriter::Form form{options.listing.format, options.count, limit, listing, open_atoms};
+  form.plan = model.plan.empty() ? nullptr : &model;
+  form.all_hits = options.search.hits == "all";
+  form.ended = options.ended;
+  return form;
 }
 
 /// Lists, draws or counts the traces of what was compiled; with `best` these are the best ones of
@@ -280,7 +282,7 @@ int list_compiled(const TracesOptions& options, const compiler::Compilation& com
     certifier->note_gaps(compilation.plan, false);
     best->certify(options.certify, options.model.models, *all, compilation.plan, invocation);
   };
-  if (options.count && !options.check && !model.has_constraints) {
+  if (options.count && !options.check && options.ended.empty() && !model.has_constraints) {
     prove_optimum();
     const auto code = count_only(options, model, *certifier, best, start, invocation);
     if (code) return *code;
@@ -295,7 +297,7 @@ int list_compiled(const TracesOptions& options, const compiler::Compilation& com
     const auto make_solver = [] { return runtime::make_cadical_solver(&stop_flag()); };
     open_atoms.emplace(model, make_solver, options.search.hits == "all");
   }
-  TraceWriter writer(form_of(options, listing.get(), open_atoms ? &*open_atoms : nullptr),
+  TraceWriter writer(form_of(options, model, listing.get(), open_atoms ? &*open_atoms : nullptr),
                      check ? &*check : nullptr, *certifier, invocation);
   std::optional<Ending> ending;
   if (model.has_constraints) {
@@ -336,7 +338,7 @@ int list_witness(const TracesOptions& options, const compiler::Compilation& comp
     };
     open_atoms.emplace(bounded ? *bounded : model, make_solver, false);
   }
-  auto form = form_of(options, listing.get(), open_atoms ? &*open_atoms : nullptr);
+  auto form = form_of(options, model, listing.get(), open_atoms ? &*open_atoms : nullptr);
   form.prints_unsettled = true;
   TraceWriter writer(std::move(form), check ? &*check : nullptr, none, invocation);
   if (optimum.witness) writer.write(*optimum.witness);
@@ -412,10 +414,17 @@ int list_traces(const TracesOptions& options, Invocation& invocation) {
   if (options.model.stats && !invocation.options().json && !compilation->costs.empty()) {
     write_error(compiler::cost_table(compilation->costs, invocation.files()));
   }
-  if (compilation->model.has_constraints && asks_for_models(options)) {
+  // Models without a plan support these.
+  const bool asks_for_models = options.search.sample > 0 || options.search.from > 1 ||
+                               options.distinct_given || options.search.strategy != "auto";
+  if (compilation->model.has_constraints && asks_for_models) {
     invocation.sink().error_about(codes::kUsage, options.model.models.front(),
                                   "--sample, --from, --distinct and --strategy do not go with a "
                                   "plan or state constraints");
+    return 0;
+  }
+  if (!options.ended.empty() && compilation->model.plan.empty()) {
+    invocation.sink().error_about(codes::kUsage, "--ended", "is about plans; there is none");
     return 0;
   }
   if (!options.model.minimize.empty() || options.model.best) {
@@ -465,6 +474,10 @@ Command traces_command() {
       .details("all is the default of --format decreasoner.")
       .check(OneOf{{"observable", "all"}})
       .show_default();
+  command
+      .option("--ended", options->ended,
+              "Only traces of a plan that ended like that: done, failed or cut")
+      .check(OneOf{{"done", "failed", "cut"}});
   command.flag("--stats", options->model.stats,
                "Show on standard error how traces were found and what each axiom costs");
   command.flag("--expect-traces", options->expect_traces, "Exit with 1 if there is no trace");

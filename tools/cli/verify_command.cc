@@ -1,9 +1,13 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "compiler/base/codes/files.h"
 #include "compiler/base/ground_name.h"
@@ -13,6 +17,7 @@
 #include "harness/report/text_layout.h"
 #include "runtime/cubes/cube_solver.h"
 #include "runtime/enumerate/open_atom_finder.h"
+#include "runtime/enumerate/plan_ends.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/certify.h"
 #include "tools/app/property_check.h"
@@ -51,8 +56,10 @@ struct CheckedProperty {
   bool by_cubes = false;          // it was searched by cubes, without a log
   std::string proof;              // "proof checked"; empty where there is nothing to prove
   PlanReservations reservations;  // why nothing was proved
-  std::string proof_origin;       // what made it, if it was accepted
-  std::string proof_file;         // where it is kept
+  /// Atoms of predicates that hold wherever the violation happens, and that the plan asks for.
+  std::vector<std::string> inputs;
+  std::string proof_origin;                      // what made it, if it was accepted
+  std::string proof_file;                        // where it is kept
   std::optional<std::vector<RestsOn>> rests_on;  // none: no ledger was named
   std::optional<PropertyBreak> broken;           // of a temporal property
 };
@@ -146,8 +153,37 @@ std::vector<PerformedStep> steps_at(const compiler::CompiledModel& model,
   return out;
 }
 
-std::string trace_text(const compiler::CompiledModel& model, const runtime::Trace& trace) {
-  std::string out = runtime::to_text(trace) + "performed\n";
+/// The symbols that the plan's formulas are about.
+std::set<std::string, std::less<>> symbols_read(const compiler::PlanGraph& plan) {
+  std::set<std::string, std::less<>> out;
+  const auto note = [&](const compiler::FormulaTree& tree) {
+    for (const auto& node : tree.nodes) {
+      if (node.name_length > 0) out.emplace(tree.name(node));
+    }
+  };
+  for (const auto& location : plan.locations) note(location.success.formula);
+  for (const auto& branch : plan.branches) note(branch.guard);
+  return out;
+}
+
+std::vector<std::string> inputs_of(const compiler::PlanGraph& plan, const runtime::Trace& trace,
+                                   const runtime::OpenAtoms& open) {
+  std::vector<std::string> out;
+  const auto read = symbols_read(plan);
+  for (const auto& atom : trace.predicates) {
+    const bool is_open =
+        std::find(open.predicates.begin(), open.predicates.end(), atom) != open.predicates.end();
+    if (!is_open && read.contains(base::symbol_of(atom))) out.push_back(atom);
+  }
+  return out;
+}
+
+std::string trace_text(const compiler::CompiledModel& model, const runtime::Trace& trace,
+                       const std::vector<std::string>& inputs) {
+  auto out = runtime::to_text(trace);
+  if (!inputs.empty()) out += "where, of what the plan asks for,\n";
+  for (const auto& atom : inputs) out += "  " + atom + '\n';
+  out += "performed\n";
   for (std::size_t t = 0; t + 1 < trace.points.size(); ++t) {
     for (const auto& step : steps_at(model, trace, t)) {
       out += fmt::format("  {} {}", t, step.event);
@@ -165,7 +201,7 @@ std::string answer_text(const compiler::CompiledModel& model, const CheckedPrope
       const auto& broken = *answer.broken;
       out += harness::wrapped("", fmt::format("`{}` {}", broken.formula, broken.text), 2);
     }
-    return out + trace_text(model, *answer.violation);
+    return out + trace_text(model, *answer.violation, answer.inputs);
   }
   if (answer.exploration == runtime::Exploration::kStopped) {
     return "stopped before the end: nothing is known\n";
@@ -220,6 +256,7 @@ std::string answer_json(const compiler::CompiledModel& model, const CheckedPrope
       }
     }
     out["performed"] = std::move(performed);
+    if (!answer.inputs.empty()) out["inputs"] = answer.inputs;
     out["trace"] = base::parse_ordered_json(answer.open ? to_jsonl(*answer.violation, *answer.open)
                                                         : observable_jsonl(*answer.violation));
   }
@@ -318,16 +355,23 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
                         invocation);
     answer.broken = check.broken(*answer.violation);
   }
+  if (answer.violation && (compilation->plan || invocation.options().json)) {
+    // A violation that was found is told after a stop, too.
+    const auto make_solver = [] {
+      return runtime::make_limited_solver(runtime::make_cadical_solver(), kProvable);
+    };
+    runtime::OpenAtomFinder finder(model, make_solver, false);
+    answer.open = finder.find(*answer.violation);
+    if (compilation->plan) {
+      if (answer.open) {
+        answer.inputs = inputs_of(*compilation->plan, *answer.violation, *answer.open);
+      }
+      runtime::PlanEnds ends(model, make_solver(), false);
+      answer.violation->ended = ends.of(*answer.violation);
+    }
+  }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   if (invocation.options().json) {
-    if (answer.violation) {
-      // A violation that was found is told after a stop, too.
-      const auto make_solver = [] {
-        return runtime::make_limited_solver(runtime::make_cadical_solver(), kProvable);
-      };
-      runtime::OpenAtomFinder finder(model, make_solver, false);
-      answer.open = finder.find(*answer.violation);
-    }
     invocation.document(answer_json(model, answer, wall.count()));
   } else {
     invocation.result(answer_text(model, answer) + rests_on_text(answer));
