@@ -4,7 +4,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/cli_json.h"
@@ -190,8 +194,46 @@ TEST_CASE("two runs say which values changed between them") {
   CHECK(document["inputs"]["settings"][0]["new_place"]["file"] == "common.yaml");
   REQUIRE(cli.parallax({"report", "r", "q", "-o", "two.html"}).code == 0);
   CHECK(has(cli.read("two.html"), "world.bodies.box.mass_kg 0.3 -&gt; 0.2"));
+  // A file that was exchanged together with its own hash.
+  auto forged = Json::parse(cli.read("q/inputs.json"));
+  const auto good = forged;
+  forged["files"]["world.yaml"] = cli.inputs()["files"]["world.yaml"];
+  cli.write("q/inputs.json", forged.dump());
+  const auto refused = cli.parallax({"diff", "r", "q"});
+  CHECK_MESSAGE(has(refused.out, "not compared: q/inputs.json does not hold what the run read"),
+                refused.out);
+  CHECK_FALSE(has(refused.out, "regions.cells.r2.x"));
+  CHECK(json_of(cli, {"diff", "r", "q"}, refused.code)["inputs"].is_null());
+  CHECK(has(cli.parallax({"report", "r", "q", "-o", "two.html"}).err, "q/inputs.json does not"));
+  CHECK_FALSE(has(cli.read("two.html"), "regions.cells.r2.x"));
+  // So is a header's hash that is claimed for other texts.
+  auto renamed = good;
+  renamed["scenario_hash"] = cli.inputs()["scenario_hash"];
+  cli.write("q/inputs.json", renamed.dump());
+  CHECK(has(cli.parallax({"diff", "r", "q"}).out, "q/inputs.json does not hold"));
   fs::remove(cli.folder() / "q/inputs.json");
-  CHECK(has(cli.parallax({"diff", "r", "q"}).out, "were not compared"));
+  CHECK(has(cli.parallax({"diff", "r", "q"}).out, "were not compared: q kept no texts"));
+}
+
+TEST_CASE("a run that was killed can be told of when its files have changed") {
+  const CliFixture cli;
+  const auto journal = cli.folder() / "k/journal.ndjson";
+  ProcessOptions options;
+  options.signal_when = [&] {
+    std::ifstream in(journal);
+    const auto lines = std::count(std::istreambuf_iterator<char>(in), {}, '\n');
+    return lines > 10 ? SIGKILL : 0;
+  };
+  const auto killed = cli.parallax({"run", "scenario.yaml", "--out", "k"}, options);
+  REQUIRE(killed.code == 128 + SIGKILL);
+  REQUIRE_FALSE(fs::exists(cli.folder() / "k/report.json"));
+  const auto before = cli.parallax({"replay", "k"});
+  REQUIRE(before.code == 0);
+  cli.replace("world.yaml", "mass_kg: 0.3", "mass_kg: 3");
+  const auto after = cli.parallax({"replay", "k"});
+  CHECK_MESSAGE(after.code == 0, after.err);
+  CHECK(after.out == before.out);
+  CHECK(has(after.err, "the texts that the run kept count"));
 }
 
 }  // namespace

@@ -214,14 +214,15 @@ base::Result<std::vector<compiler::Fact>> result_facts(const std::string& path, 
 
 /// Adds what differs between the texts that two runs kept.
 void add_kept(const DiffOptions& options, ComparedRevisions& out, Invocation& invocation) {
-  const auto kept = compare_kept(options.old_path, options.new_path, invocation);
+  const auto compared = compare_kept(options.old_path, options.new_path, invocation);
+  const auto& kept = compared.difference;
   if (!kept) {
     out.fields += ",\"inputs\":null";
     std::error_code error;
     const bool folders = std::filesystem::is_directory(options.old_path, error) &&
                          std::filesystem::is_directory(options.new_path, error);
     if (!folders) return;  // a report alone has no texts beside it
-    out.text += "the texts of the scenarios were not compared: not both runs kept them\n";
+    out.text += fmt::format("the texts of the scenarios were not compared: {}\n", compared.refused);
     return;
   }
   const auto text = kept_text(*kept, options.stat);

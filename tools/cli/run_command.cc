@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
@@ -214,6 +215,41 @@ Ran run_closed(const RunOptions& options, const ScenarioModel& loaded,
   return {std::move(result), (*loop)->solve_calls()};
 }
 
+/// Writes the texts that a run reads beside its journal as soon as there is one, so that a run that
+/// is killed has them, too. Before that the folder may belong to another run.
+class InputsKeeper {
+ public:
+  InputsKeeper(std::filesystem::path file, std::string text, Invocation& invocation)
+      : file_(std::move(file)), text_(std::move(text)), invocation_(invocation) {}
+
+  /// Calls `keep` before the first simulation is waited for. Under a search, which reports no
+  /// progress, when the first simulation has been judged.
+  void watch(harness::CampaignOptions& campaign) {
+    campaign.progress = [this, tell = std::move(campaign.progress)](const auto& progress) {
+      keep();
+      if (tell) tell(progress);
+    };
+    campaign.on_sample = [this, tell = std::move(campaign.on_sample)](auto row) {
+      keep();
+      if (tell) tell(std::move(row));
+    };
+  }
+  /// The journal must be open. Writes once; whether that succeeded.
+  bool keep() {
+    if (text_.empty()) return is_kept_;
+    is_kept_ =
+        base::write_output(file_, std::exchange(text_, {}), invocation_.files(), invocation_.sink())
+            .has_value();
+    return is_kept_;
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::string text_;  // empty: nothing to write, or it was written
+  Invocation& invocation_;
+  bool is_kept_ = true;
+};
+
 /// Warns that a clean run used the starts for which a fault was mended.
 void warn_of_reused_starts(const harness::CampaignOptions& campaign,
                            const harness::CampaignResult& result, const harness::Scenario& scenario,
@@ -253,8 +289,7 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   }
   const auto& model = loaded->compilation.model;
   // Before it is run, which may take long: the files may change meanwhile.
-  const auto inputs =
-      packed_inputs(options.scenario, loaded->sources_hash, invocation.files().inputs());
+  auto inputs = packed_inputs(options.scenario, loaded->sources_hash, invocation.files().inputs());
   auto campaign = campaign_options(options, *loaded, invocation);
   if (options.out.empty() && !base::check_unnamed_output(campaign.run_dir, ".", "--out", sink)) {
     return 0;
@@ -271,20 +306,20 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   const auto opinion = OpinionOfRun::of(options.opinion, *loaded, invocation);
   if (!opinion) return 0;
   if (*opinion) campaign.on_sample = (*opinion)->listener(std::move(campaign.on_sample));
+  const bool shows_progress = static_cast<bool>(campaign.progress);
+  InputsKeeper keeper(campaign.run_dir / kInputsName, std::move(inputs), invocation);
+  keeper.watch(campaign);
   const bool closed = loaded->scenario.execution == Execution::kClosedLoop;
   auto ran = closed ? run_closed(options, *loaded, *simulator, campaign, opinion->get(), invocation)
                     : run_open(*loaded, *simulator, campaign, opinion->get(), invocation);
   auto& result = ran.result;
-  if (campaign.progress) clear_progress();
+  if (shows_progress) clear_progress();
   if (!report_fleet(*workers, invocation) || !result) return 0;
   if (!samples.write(invocation)) return 0;
   result->coverage = coverage_of_run(*loaded, *result, invocation);
   warn_of_reused_starts(campaign, *result, loaded->scenario, sink);
   if (result->journal_open && !harness::write_report(*result, campaign.run_dir, sink)) return 0;
-  if (result->journal_open && !inputs.empty() &&
-      !base::write_output(campaign.run_dir / kInputsName, inputs, invocation.files(), sink)) {
-    return 0;
-  }
+  if (result->journal_open && !keeper.keep()) return 0;
   const bool is_verbose = invocation.options().verbosity > 0;
   if (invocation.options().json) {
     invocation.document(harness::campaign_json(*result, true, is_verbose));

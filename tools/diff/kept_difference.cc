@@ -1,8 +1,18 @@
 #include "tools/diff/kept_difference.h"
 
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <system_error>
+
 #include "compiler/artifact/path_map.h"
+#include "compiler/base/shown_text.h"
 #include "compiler/base/temporary_folder.h"
+#include "harness/campaign/journal.h"
+#include "harness/campaign/replay.h"
 #include "tools/app/kept_inputs.h"
+#include "tools/app/recorded_run.h"
+#include "tools/app/scenario_model.h"
 
 namespace parallax::tools {
 namespace {
@@ -12,23 +22,60 @@ void name_places(ModelRevision& side, const compiler::PathMap& map) {
   for (auto& fact : side.facts) fact.place.file = map.mapped(fact.place.file);
 }
 
+/// The kept texts of one run, unpacked.
+struct KeptSide {
+  std::filesystem::path scenario;
+  std::string refused;  // empty: they are the run's
+  bool is_altered = false;
+};
+
+/// Unpacks the texts of `folder` into `root` and checks that together they are what the run read:
+/// a hash for each file says nothing of one that was exchanged with its hash.
+KeptSide kept_side(const std::string& folder, const std::filesystem::path& root,
+                   const Context& context) {
+  const auto name = base::printable(folder);
+  Context own({.allow_outside = context.form().allow_outside}, context.stop());
+  const auto journal = harness::read_journal(folder, own.files(), own.sink());
+  if (!journal || !journal->header) return {{}, name + " has no journal that can be read", false};
+  const auto& header = *journal->header;
+  std::error_code error;
+  if (!std::filesystem::exists(std::filesystem::path(folder) / kInputsName, error)) {
+    return {{}, name + " kept no texts", false};
+  }
+  const KeptSide altered{
+      {}, fmt::format("{}/{} does not hold what the run read", name, kInputsName), true};
+  const auto unpacked = unpack_inputs(folder, header.scenario_hash, header.scenario, root);
+  if (!unpacked) return altered;
+  // Only the texts of the scenario count for its hash, so a context of its own reads them.
+  Context reader({.allow_outside = context.form().allow_outside}, context.stop());
+  const auto loaded = load_scenario_model(
+      unpacked->scenario, reader, {.as_run = true, .execution = recorded_execution(header)});
+  if (!loaded || !harness::scenario_change(header, loaded->sources_hash).empty()) return altered;
+  return {unpacked->scenario, {}, false};
+}
+
 }  // namespace
 
-std::optional<ModelDifference> compare_kept(const std::string& old_folder,
-                                            const std::string& new_folder, Context& context) {
+KeptComparison compare_kept(const std::string& old_folder, const std::string& new_folder,
+                            Context& context) {
   const base::TemporaryFolder scratch("inputs");
-  if (scratch.path().empty()) return std::nullopt;
+  if (scratch.path().empty()) return {std::nullopt, "there is no temporary folder", false};
   const auto old_root = scratch.path() / "old", new_root = scratch.path() / "new";
-  const auto before = unpack_inputs(old_folder, "", "", old_root);
-  const auto after = unpack_inputs(new_folder, "", "", new_root);
-  if (!before || !after) return std::nullopt;
+  const auto before = kept_side(old_folder, old_root, context);
+  const auto after = kept_side(new_folder, new_root, context);
+  for (const auto* side : {&before, &after}) {
+    if (side->is_altered) return {std::nullopt, side->refused, true};
+  }
+  for (const auto* side : {&before, &after}) {
+    if (!side->refused.empty()) return {std::nullopt, side->refused, false};
+  }
   Context own({.allow_outside = context.form().allow_outside}, context.stop());
   ModelDiffOptions options;
   options.traces = false;
   options.find_renamings = true;
-  auto found = compare_models(before->scenario.string(), RevisionKind::kScenario,
-                              after->scenario.string(), RevisionKind::kScenario, options, own);
-  if (!found) return std::nullopt;
+  auto found = compare_models(before.scenario.string(), RevisionKind::kScenario,
+                              after.scenario.string(), RevisionKind::kScenario, options, own);
+  if (!found) return {std::nullopt, "they cannot be read any more", false};
   compiler::PathMap map{std::filesystem::path()};
   map.add(old_root.string() + "=");
   map.add(new_root.string() + "=");
@@ -40,7 +87,7 @@ std::optional<ModelDifference> compare_kept(const std::string& old_folder,
       change.new_file = map.mapped(change.new_file);
     }
   }
-  return *std::move(found);
+  return {*std::move(found), {}, false};
 }
 
 std::string kept_text(const ModelDifference& found, bool stat) {
