@@ -70,6 +70,11 @@ int conclude(SuiteRecord& record, const SuiteOptions& options, Invocation& invoc
   } else {
     invocation.result(summary_text(record));
   }
+  // What is gone has been told, also where the list of quarantine knows it.
+  if (record.count(Outcome::kRemoved) + record.quarantined() > 0) {
+    record.forget_removed();
+    saved = record.save(sink).has_value() && saved;
+  }
   if (record.count(Outcome::kFailed) + record.count(Outcome::kError) > 0) return 1;
   const auto open = record.count(Outcome::kNotFinished) + record.count(Outcome::kInconclusive) +
                     record.count(Outcome::kRemoved);

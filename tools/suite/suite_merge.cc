@@ -84,6 +84,9 @@ base::Result<Parts> read_parts(const std::vector<std::string>& folders,
       out.lost.push_back(folder);
       continue;
     }
+    // A shard that was killed lists what is gone; the merge asks the last merge.
+    std::erase_if(results->cases,
+                  [](const auto& item) { return item.second.result.outcome == Outcome::kRemoved; });
     if (results->identity.program.empty()) {
       return refused(folder, "these results are of an older version; run the shard again", sink);
     }

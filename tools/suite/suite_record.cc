@@ -168,6 +168,13 @@ SuiteRecord::SuiteRecord(std::vector<SuiteCase> cases, const std::vector<bool>& 
     if (!cases_[i].is_removed) continue;
     results_[i].outcome = Outcome::kRemoved;
     results_[i].problems = {"the last suite had this case, and it is gone"};
+    stored_.cases.insert_or_assign(cases_[i].name(), StoredCase{cases_[i], results_[i]});
+  }
+}
+
+void SuiteRecord::forget_removed() {
+  for (const auto& one : cases_) {
+    if (one.is_removed) stored_.cases.erase(one.name());
   }
 }
 

@@ -31,7 +31,8 @@ class SuiteRecord {
  public:
   /// `junit` may be empty: then no such report is written. The results are laid over `stored`,
   /// whose identity is theirs. Cases of `skipped` (parallel to `cases`) are marked so, and those
-  /// that are removed as such. Call `save` before the first case.
+  /// that are removed as such: the file lists them until `forget_removed`, so that a suite that is
+  /// killed before it tells them hides none. Call `save` before the first case.
   SuiteRecord(std::vector<SuiteCase> cases, const std::vector<bool>& skipped,
               std::filesystem::path folder, std::filesystem::path junit, StoredResults stored,
               harness::Quarantine quarantine = {});
@@ -41,6 +42,8 @@ class SuiteRecord {
   void finish(std::size_t index, CaseResult result);
   /// Writes the files; reports kFileNotWritable.
   base::Status save(base::DiagnosticSink& sink);
+  /// To be called when cases that are removed have been told: the next `save` lists them no more.
+  void forget_removed();
   /// Cases of that outcome, but for those that failed and may.
   std::size_t count(Outcome outcome) const;
   std::size_t quarantined() const;

@@ -63,7 +63,8 @@ SuiteIdentity identity_from_json(const Json& json) {
 }
 
 constexpr std::array kOutcomes = {Outcome::kPassed,       Outcome::kFailed,      Outcome::kError,
-                                  Outcome::kInconclusive, Outcome::kNotFinished, Outcome::kSkipped};
+                                  Outcome::kInconclusive, Outcome::kNotFinished, Outcome::kSkipped,
+                                  Outcome::kRemoved};
 
 std::optional<Outcome> outcome_of(const std::string& text) {
   for (const auto outcome : kOutcomes) {
@@ -219,11 +220,7 @@ base::Status write_results(const fs::path& folder, StoredResults stored,
                            const std::vector<SuiteCase>& cases,
                            const std::vector<CaseResult>& results, base::DiagnosticSink& sink) {
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    // It is told once: the next suite is compared with this one.
-    if (cases[i].is_removed) {
-      stored.cases.erase(cases[i].name());
-      continue;
-    }
+    if (cases[i].is_removed) continue;  // in `stored` until it has been told
     StoredCase one{cases[i], results[i]};
     if (results[i].outcome == Outcome::kSkipped) {
       stored.cases.try_emplace(cases[i].name(), std::move(one));

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <csignal>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -65,6 +66,26 @@ TEST_CASE("a case that is gone is told and counted, once") {
   REQUIRE(junit.all("error").size() == 1);
   CHECK(junit.all("error")[0]->at("type") == "removed");
   CHECK(cli.suite({}).code == 0);
+}
+
+TEST_CASE("a suite that is killed before it tells what is gone hides nothing") {
+  const SuiteFixture cli;
+  REQUIRE(cli.suite({"--update-goldens"}).code == 0);
+  // The scenario takes seconds, so that the suite is killed while it runs.
+  const auto suite = [&](std::vector<std::string> more, ProcessOptions options = {}) {
+    more.insert(more.begin(), {"suite", "s", "scenario.yaml"});
+    return cli.parallax(std::move(more), std::move(options));
+  };
+  REQUIRE(suite({}).code == 0);
+  take_out(cli);
+  ProcessOptions options;
+  options.signal_when = [&] {
+    return holds(cli.read("out/suite/results.json"), "not finished") ? SIGKILL : 0;
+  };
+  REQUIRE(suite({"--no-cache"}, options).code == 128 + SIGKILL);
+  CHECK(holds(suite({}).out, "GONE  s/suite.yaml:lit"));
+  CHECK_FALSE(holds(suite({}).out, "GONE"));
+  CHECK_FALSE(holds(cli.read("out/suite/results.json"), "s/suite.yaml:lit"));
 }
 
 TEST_CASE("a case that failed and is gone is not run again, and is told") {
