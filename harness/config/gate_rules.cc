@@ -89,6 +89,14 @@ std::vector<std::string_view> setting_rules() {
   return out;
 }
 
+/// Every key of `models`.
+std::vector<std::string_view> model_rules() {
+  auto out = setting_rules();
+  out.insert(out.end(), {Key::kLostTraces, Key::kGainedTraces, Key::kDeclarations, Key::kAxioms,
+                         Key::kProperties});
+  return out;
+}
+
 void read_setting_rules(const YamlFields& fields, std::vector<GateRules::SettingRule>& out) {
   for (const auto name : setting_rules()) {
     std::vector<std::string_view> words(kPermissions.begin(), kPermissions.end());
@@ -182,6 +190,8 @@ base::Result<GateRules> load_gate_rules(const std::filesystem::path& path, base:
   const auto root = load_yaml(path, gate, files, sink);
   if (!root) return sink.already_reported();
   YamlFields fields(*root, "the file of rules", sink);
+  const auto of_models = model_rules();
+  fields.belongs(Key::kModels, of_models);
   fields.only({Key::kModels, Key::kPlans, Key::kTraces, Key::kRuns, Key::kRates, Key::kUndecided});
   GateRules out;
   out.source = root->range;

@@ -79,6 +79,7 @@ std::string indented_lines(const std::string& text) {
 std::string gate_summary(const GateReport& report) {
   const auto broken = report.count(RuleOutcome::kBroken);
   const auto open = report.count(RuleOutcome::kUndecided);
+  if (report.rules.empty()) return "nothing changed that a rule is about";
   if (broken + open == 0) {
     return report.rules.size() == 1 ? "the rule is kept"
                                     : fmt::format("all {} rules are kept", report.rules.size());

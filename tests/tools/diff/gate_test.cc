@@ -214,6 +214,10 @@ TEST_CASE("a gate and diff see what a scenario says beside its model") {
   CHECK(gate.hold("models: {criterion: not-weaker}\n", weaker, before)["passed"] == true);
   gate.refused("models: {criterion: not-wider}\n", "not-weaker");
   gate.refused("models: {wold: forbidden}\n", "world");
+  // Rules that stand one level too high.
+  for (const std::string key : {"settings", "world", "lost_traces", "properties"}) {
+    gate.refused(key + ": forbidden\n", "Move it below `models`");
+  }
   const auto told = gate.parallax({"diff", before, weaker, "--no-traces"});
   CHECK(told.code == 1);
   CHECK(told.out ==
