@@ -406,7 +406,7 @@ class PlanCompiler {
 
 }  // namespace
 
-base::Result<PlanCode> compile_plan(LispText& text, const PlanEntry& entry, bool interleave,
+base::Result<PlanCode> compile_plan(LispText& text, const PlanStart& entry, bool interleave,
                                     const PlanBinding& binding, ValueStore& values,
                                     base::DiagnosticSink& sink) {
   return PlanCompiler(text, values, sink, interleave, binding, entry.forms).compile(entry.function);

@@ -168,7 +168,7 @@ struct PlanCode {
 
 /// What runs: a function, or the forms at top level of one file; otherwise the forms at top level
 /// of all files, or else the last function defined.
-struct PlanEntry {
+struct PlanStart {
   std::optional<std::string> function = std::nullopt;
   std::optional<base::FileId> forms = std::nullopt;
 };
@@ -177,7 +177,7 @@ struct PlanEntry {
 /// run. What the run cannot come to is not looked at. `binding` names functions that carry actions
 /// out, and the table of failure classes. `interleave`: the branches of `par` take turns; otherwise
 /// they run in written order (W-PAR). Macros add their expansions to the text's data.
-base::Result<PlanCode> compile_plan(LispText& text, const PlanEntry& entry, bool interleave,
+base::Result<PlanCode> compile_plan(LispText& text, const PlanStart& entry, bool interleave,
                                     const PlanBinding& binding, ValueStore& values,
                                     base::DiagnosticSink& sink);
 
