@@ -70,7 +70,7 @@ int conclude(SuiteRecord& record, const SuiteOptions& options, Invocation& invoc
   } else {
     invocation.result(summary_text(record));
   }
-  // What is gone has been told, also where the list of quarantine knows it.
+  // Cases that are gone have been told, also those that the list of quarantine knows.
   if (record.count(Outcome::kRemoved) + record.quarantined() > 0) {
     record.forget_removed();
     saved = record.save(sink).has_value() && saved;
