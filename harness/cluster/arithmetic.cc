@@ -10,16 +10,17 @@
 namespace parallax::harness {
 namespace {
 
-constexpr int kArguments = 2'000;  // two implementations of sin differ in about one of a hundred
-constexpr std::size_t kDigits = 16;
+constexpr int kFixedArguments =
+    2'000;  // two implementations of sin differ in about one of a hundred
+constexpr std::size_t kArithmeticDigits = 16;
 
-using Function = double (*)(double);
+using MathFunction = double (*)(double);
 
 // Through pointers that the compiler does not see through: what it computed itself would be the
 // same everywhere.
 volatile double unknown_one = 1.0;
 
-constexpr std::array<Function, 14> kFunctions = {
+constexpr std::array<MathFunction, 14> kMathFunctions = {
     [](double x) { return std::sin(x); },        [](double x) { return std::cos(x); },
     [](double x) { return std::tan(x); },        [](double x) { return std::atan(x); },
     [](double x) { return std::exp(-x / 64); },  [](double x) { return std::log(x); },
@@ -29,7 +30,7 @@ constexpr std::array<Function, 14> kFunctions = {
     [](double x) { return std::hypot(x, 0.7); }, [](double x) { return std::sqrt(x); },
 };
 
-void append(std::uint64_t bits, std::string& text) {
+void append_bits(std::uint64_t bits, std::string& text) {
   for (int i = 0; i < 8; ++i) text += static_cast<char>(bits >> (8 * i) & 0xff);
 }
 
@@ -38,18 +39,18 @@ void append(std::uint64_t bits, std::string& text) {
 std::string arithmetic_digits() {
   std::string results;
   double sum = 0.0;
-  for (int i = 0; i < kArguments; ++i) {
+  for (int i = 0; i < kFixedArguments; ++i) {
     const double x = unknown_one * (1.0 + 0.37 * i);
-    for (const auto function : kFunctions) {
+    for (const auto function : kMathFunctions) {
       const double y = function(x);
-      append(std::bit_cast<std::uint64_t>(y), results);
+      append_bits(std::bit_cast<std::uint64_t>(y), results);
       sum += y * unknown_one;  // one rounding or two
     }
     const float small = static_cast<float>(x);
-    append(std::bit_cast<std::uint32_t>(std::sin(small) + std::exp(-small / 64)), results);
+    append_bits(std::bit_cast<std::uint32_t>(std::sin(small) + std::exp(-small / 64)), results);
   }
-  append(std::bit_cast<std::uint64_t>(sum), results);
-  return base::sha256_hex(results).substr(0, kDigits);
+  append_bits(std::bit_cast<std::uint64_t>(sum), results);
+  return base::sha256_hex(results).substr(0, kArithmeticDigits);
 }
 
 }  // namespace parallax::harness
