@@ -1,12 +1,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/base/ground_name.h"
 #include "compiler/repair/edit_subject.h"
 #include "compiler/repair/idle_condition.h"
 #include "compiler/syntax/printer.h"
 
 namespace parallax::compiler {
 namespace {
+
+constexpr int kDropSuperfluous = 1;  // oddity: comes before another sign, which comes behind it
 
 /// Edits of an existing axiom that may be wrong.
 class AxiomEdits {
@@ -17,8 +20,41 @@ class AxiomEdits {
     if (subject_.forms[i].kind == AxiomForm::Kind::kEffects) {
       edit_effects(i);
     } else {
-      drop(i);
+      drop(i, 3);
       edit_conditions(i);
+      if (subject_.forms[i].kind == AxiomForm::Kind::kTrigger) narrow(i);
+    }
+  }
+
+  /// The effects of another event that fit what differed become those of an event in the scope.
+  void move_effects(std::size_t i) {
+    const auto& form = subject_.forms[i];
+    const bool wide = !subject_.scope.more_fluents.empty();  // these would be most of all edits
+    if (wide || form.kind != AxiomForm::Kind::kEffects || form.effects.size() != 1) return;
+    const auto& tree = ast(form);
+    const auto effect = form.effects.front();
+    const auto parts = *effect_parts(tree, effect);
+    const auto& fluent = tree[parts.fluent];
+    if (fluent.kind != NodeKind::kApply) return;
+    const std::string name(tree.name(fluent)), kind(tree.name(tree[effect]));
+    if (!subject_.fluents.contains(name)) return;
+    const auto variables = sorted(form.variables, form.time);
+    for (const auto& event : subject_.events) {
+      const auto symbol = subject_.typed.find_symbol(event);
+      if (event == form.event_symbol || !symbol ||
+          subject_.typed.symbols[*symbol].kind != SymbolKind::kEvent) {
+        continue;
+      }
+      for (const auto& [term, oddity] :
+           terms(event, subject_.typed.symbols[*symbol].arguments, variables)) {
+        const auto count = out_.size();
+        replace(i, effect,
+                kind + "(" + term + "," + print_formula(tree, parts.fluent) + "," + form.time + ")",
+                2 + oddity);
+        if (out_.size() == count) continue;
+        out_.back().event = event;
+        out_.back().moves_effect = true;
+      }
     }
   }
 
@@ -44,36 +80,68 @@ class AxiomEdits {
     return out;
   }
 
-  void drop(std::size_t i) {
+  void drop(std::size_t i, int oddity) {
     Edit edit;
     edit.kind = Edit::Kind::kDropAxiom;
     edit.axioms = {i};
     edit.event = subject_.forms[i].event_symbol;
-    edit.oddity = 3;
+    edit.oddity = oddity;
     out_.push_back(std::move(edit));
   }
 
   void edit_effects(std::size_t i) {
     const auto& form = subject_.forms[i];
-    bool relevant = false;
+    bool relevant = false, superfluous = true;
     for (const auto effect : form.effects) {
       const auto parts = effect_parts(ast(form), effect);
       const auto& fluent = ast(form)[parts->fluent];
       const bool named = fluent.kind == NodeKind::kApply;
       const bool differs = !named || subject_.fluents.contains(std::string(ast(form).name(fluent)));
       relevant = relevant || differs;
+      superfluous = superfluous && !came_reversed(form, effect);
       replace_effect(i, effect, differs);
     }
     if (!relevant) return;
-    drop(i);
+    drop(i, superfluous ? kDropSuperfluous : 3);
     edit_conditions(i);
+    narrow(i);
+  }
+
+  /// Did the fluent change against the effect's sign with the event in some run? If it never did,
+  /// the effect is more likely superfluous than reversed.
+  bool came_reversed(const AxiomForm& form, NodeId effect) const {
+    const auto& tree = ast(form);
+    const auto& fluent = tree[effect_parts(tree, effect)->fluent];
+    if (fluent.kind != NodeKind::kApply) return true;
+    const std::string name(tree.name(fluent));
+    const bool reversed = tree.name(tree[effect]) == "Terminates";
+    const auto changed = subject_.scope.changed.find(form.event_symbol);
+    if (changed != subject_.scope.changed.end() && changed->second.contains({name, reversed})) {
+      return true;
+    }
+    // Demanded events are in no recording: the steps where runs and model part tell.
+    if (!subject_.scope.demanded.contains(form.event_symbol)) return false;
+    return std::any_of(
+        subject_.scope.steps.begin(), subject_.scope.steps.end(), [&](const auto& step) {
+          return std::any_of(step.differing.begin(), step.differing.end(), [&](const auto& seen) {
+            const auto before = step.before.find(seen.first);
+            return base::symbol_of(seen.first) == name && seen.second == reversed &&
+                   before != step.before.end() && before->second != seen.second;
+          });
+        });
+  }
+
+  /// Adds conditions under which the axiom would not have applied in some step.
+  void narrow(std::size_t i) {
+    const auto& form = subject_.forms[i];
     const auto variables = sorted(form.variables, form.time);
     const auto arguments = event_arguments(form);
     for (const auto& literal : condition_literals(subject_.typed, variables, kMostLiterals)) {
       if (!subject_.relevance.in_some_step(literal, false, arguments, form.event_symbol,
                                            form.variables) ||
-          is_idle_condition(subject_.model, subject_.forms, form,
-                            print(literal, form.time, form.variables))) {
+          (form.kind == AxiomForm::Kind::kEffects &&
+           is_idle_condition(subject_.model, subject_.forms, form,
+                             print(literal, form.time, form.variables)))) {
         continue;
       }
       Edit edit;
@@ -147,7 +215,8 @@ class AxiomEdits {
       return name + "(" + e + "," + f + "," + form.time + ")";
     };
     if (differs && kind != "Releases") {
-      replace(i, effect, atom(kind == "Initiates" ? "Terminates" : "Initiates", event, fluent), 1);
+      replace(i, effect, atom(kind == "Initiates" ? "Terminates" : "Initiates", event, fluent),
+              came_reversed(form, effect) ? 1 : 1 + kDropSuperfluous);
     }
     if (differs && tree[parts.fluent].kind == NodeKind::kApply) {
       for (const auto& other : other_terms(form, parts.fluent)) {
@@ -155,6 +224,8 @@ class AxiomEdits {
       }
       for (const auto& [e, f] : exchanged(form, parts)) replace(i, effect, atom(kind, e, f), 2);
     }
+    // No recording tells what a demanded event did: an effect that did not differ is rather right.
+    const int instead = !differs && subject_.scope.demanded.contains(form.event_symbol) ? 3 : 2;
     for (const auto& name : differs ? fluents_for(form.event_symbol, kind) : subject_.fluents) {
       const auto symbol = subject_.typed.find_symbol(name);
       if (!symbol || subject_.typed.symbols[*symbol].kind != SymbolKind::kFluent) continue;
@@ -164,7 +235,7 @@ class AxiomEdits {
       const auto variables = sorted(form.variables, form.time);
       for (const auto& [term, oddity] :
            terms(name, subject_.typed.symbols[*symbol].arguments, variables)) {
-        replace(i, effect, atom(kind, event, term), 2 + oddity);
+        replace(i, effect, atom(kind, event, term), instead + oddity);
       }
     }
   }
@@ -321,6 +392,7 @@ void add_axiom_edits(const EditSubject& subject, std::vector<Edit>& edits) {
   AxiomEdits maker(subject, edits);
   for (std::size_t i = 0; i < subject.forms.size(); ++i) {
     if (subject.events.contains(subject.forms[i].event_symbol)) maker.edit(i);
+    maker.move_effects(i);
   }
 }
 

@@ -88,6 +88,13 @@ bool read_precondition(const Ast& ast, AxiomForm& form) {
   return !form.event_symbol.empty();
 }
 
+bool read_trigger(const Ast& ast, AxiomForm& form) {
+  if (!form.condition || !is_call(ast, form.head, "Happens", 2)) return false;
+  const auto& node = ast[form.head];
+  form.kind = AxiomForm::Kind::kTrigger;
+  return name_event(ast, ast.child(node, 0), ast.child(node, 1), form);
+}
+
 /// Variables, condition and head of a formula.
 AxiomForm outline(const Ast& ast, const Statement& statement) {
   AxiomForm form;
@@ -115,6 +122,8 @@ AxiomForm read_form(const Ast& ast, const Statement& statement) {
   if (read_effects(ast, form)) return form;
   form.event_symbol.clear();
   if (read_precondition(ast, form)) return form;
+  form.event_symbol.clear();
+  if (read_trigger(ast, form)) return form;
   return outline(ast, statement);
 }
 

@@ -21,10 +21,11 @@ struct TextChange {
 };
 
 /// A formula of a model whose parts an edit can name: effects of one event, `[variables] condition
-/// -> Initiates(E,F,time) & ...`, or a precondition of an event, `[variables] Happens(E,time) & ...
-/// -> ...`. Of other formulas only the condition is read.
+/// -> Initiates(E,F,time) & ...`, a precondition of an event, `[variables] Happens(E,time) & ... ->
+/// ...`, or a trigger, `[variables] condition -> Happens(E,time)`. Of other formulas only the
+/// condition is read.
 struct AxiomForm {
-  enum class Kind : std::uint8_t { kEffects, kPrecondition, kOther };
+  enum class Kind : std::uint8_t { kEffects, kPrecondition, kTrigger, kOther };
   Kind kind = Kind::kEffects;
   ModelAst::Place place;
   std::uint32_t begin = 0, end = 0;    // of its text, with label and period

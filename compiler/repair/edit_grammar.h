@@ -49,6 +49,7 @@ struct Edit {
   std::string words;                    // kAddEffect of several effects: "ends `F` and begins `G`"
   std::vector<Sentence> sentences;      // kDelay
   bool names_constants = false;         // kAddEffect: in the place of variables
+  bool moves_effect = false;            // kReplace: the effect becomes one of another event
   /// Distance from what people usually write and forget: constants where a variable would do, a
   /// condition that no other axiom of the event has. Smaller is tried first among equals.
   int oddity = 0;
@@ -83,6 +84,8 @@ struct EditScope {
   std::map<std::string, std::set<std::pair<std::string, bool>>> changed;
   /// Other events, and fluents, whose axioms may be to blame as well.
   std::set<std::string> more_events, more_fluents;
+  /// Events that axioms of the model demand: some of `more_events`.
+  std::set<std::string> demanded;
   /// The effects of an event may be left open: `Releases`.
   bool open_outcomes = false;
   /// The same for an event that the world refused, though it can happen.

@@ -227,6 +227,11 @@ class EventEdits {
     edit.variables = of_event;
     edit.event_arity = arity;
     edit.oddity = kind == "Releases" ? 4 : 2;
+    // Beside events that the model demands, one that does nothing in it is an odd cause.
+    const auto& demanded = subject_.scope.demanded;
+    if (!demanded.empty() && !demanded.contains(event) && effects_of(event).empty()) {
+      edit.oddity += 2;
+    }
     std::vector<SortedVariable> variables;
     for (std::size_t i = 0; i < arity; ++i) variables.push_back({names[i], sorts[i]});
     bool constants = false;
@@ -255,7 +260,7 @@ class EventEdits {
     out_.push_back(edit);
     // Conditions of effects that are special already, or in a wide scope, would be most of all
     // edits.
-    if (constants || own > 1 || !subject_.scope.more_events.empty()) return;
+    if (constants || own > 1 || !subject_.scope.more_fluents.empty()) return;
     subject_.relevance.add_conditions(subject_.typed, place, variables, arity,
                                       1 + kMostLiterals / 8, {}, out_);
   }

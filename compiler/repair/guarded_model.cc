@@ -50,7 +50,7 @@ class GuardedForm {
           edits_[i].kind == Edit::Kind::kDropAxiom || edits_[i].kind == Edit::Kind::kDelay;
       if (goes) conditions.push_back("!" + on(i));
     }
-    if (form_.kind == AxiomForm::Kind::kPrecondition) {
+    if (form_.kind != AxiomForm::Kind::kEffects) {
       return quantifier + joined(conditions, "(" + print_formula(ast, form_.head) + ")") + ".\n";
     }
     std::string out;
@@ -91,8 +91,13 @@ class GuardedForm {
     const auto atom = name + "(" + list_of(form_.variables) + ")";
     const auto quantifier = "[" + list_of(form_.variables) + "] ";
     auto happening = conditions;
-    happening.insert(happening.begin(),
-                     "Happens(" + print_formula(ast, form_.event) + "," + form_.time + ")");
+    // An edit may say the effect of another event.
+    const bool own = std::none_of(touching_.begin(), touching_.end(),
+                                  [&](std::size_t i) { return edits_[i].moves_effect; });
+    if (own) {
+      happening.insert(happening.begin(),
+                       "Happens(" + print_formula(ast, form_.event) + "," + form_.time + ")");
+    }
     out += "predicate " + name + "(" + list_of(sorts) + ")\n";
     out += quantifier + joined(happening, atom) + ".\n";
     for (const auto& condition : conditions) {

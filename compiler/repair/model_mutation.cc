@@ -52,6 +52,11 @@ bool is_not(const Ast& ast, NodeId node) {
   return ast[node].kind == NodeKind::kUnary && ast[node].op == Operator::kNot;
 }
 
+/// Effects and preconditions.
+bool is_of_event(const AxiomForm& form) {
+  return form.kind == AxiomForm::Kind::kEffects || form.kind == AxiomForm::Kind::kPrecondition;
+}
+
 class ModelMutator {
  public:
   ModelMutator(const ModelAst& model, const TypedModel& typed, const base::SourceFiles& files)
@@ -68,6 +73,7 @@ class ModelMutator {
           drop(i, "precondition forgotten");
           mutate_conditions(i);
           break;
+        case AxiomForm::Kind::kTrigger:
         case AxiomForm::Kind::kOther:
           mutate_other(i);
           break;
@@ -76,9 +82,8 @@ class ModelMutator {
     const EditText text(model_, files_, forms_, edits_);
     std::vector<Mutation> out;
     for (std::size_t i = 0; i < edits_.size(); ++i) {
-      out.push_back(
-          {std::move(kinds_[i]), text.words({i}), places_[i], text.changes({i}),
-           forms_[edits_[i].axioms.front()].kind != AxiomForm::Kind::kOther && !negated_[i]});
+      out.push_back({std::move(kinds_[i]), text.words({i}), places_[i], text.changes({i}),
+                     is_of_event(forms_[edits_[i].axioms.front()]) && !negated_[i]});
     }
     std::stable_sort(out.begin(), out.end(), [](const Mutation& a, const Mutation& b) {
       return std::pair(a.at.file, a.at.begin) < std::pair(b.at.file, b.at.begin);
@@ -190,7 +195,7 @@ class ModelMutator {
       add(std::move(edit), "condition dropped", tree.source(tree[conjunct]));
       negate(i, conjunct, "condition negated");
       const auto inner = is_not(tree, conjunct) ? tree.child(tree[conjunct], 0) : conjunct;
-      if (form.kind != AxiomForm::Kind::kOther && is_apply(tree, inner, "HoldsAt")) {
+      if (is_of_event(form) && is_apply(tree, inner, "HoldsAt")) {
         exchange_variables(i, conjunct);
       }
     }

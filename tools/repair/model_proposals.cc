@@ -32,6 +32,10 @@ class ModelSearch {
   FoundProposals run() {
     if (input_.contradictions.empty()) {
       search_all(Mode::kExact);
+      // None of these follows a run to its end: there may be a further mistake behind the first.
+      for (std::size_t size = 1; size <= 2 && most_whole() == 0 && !context_.stopped(); ++size) {
+        search(Mode::kWhole, size, 0);
+      }
       // As a last resort, leaves the outcome open: even for one run that tried twice and saw both
       // outcomes.
       if (result_.proposals.empty() && !context_.stopped()) search(Mode::kOpen, 1);
@@ -58,6 +62,7 @@ class ModelSearch {
     kOpen,      // the model may leave open what happens
     kWide,      // kExact, about all that led to the step
     kEither,    // kExact, with conditions of which one of two is enough
+    kWhole,     // kWide, about whole runs, which have to go to their end
   };
 
   std::size_t most_whole() const {
@@ -88,8 +93,13 @@ class ModelSearch {
   }
 
   EditScope scope(Mode mode) const {
-    const bool wide = mode == Mode::kWide;
+    const bool wide = mode == Mode::kWide || mode == Mode::kWhole;
     EditScope out;
+    for (const auto& form : domain_.forms) {
+      if (form.kind == compiler::AxiomForm::Kind::kTrigger) out.demanded.insert(form.event_symbol);
+    }
+    // They are in no recording: any of them may have happened at the step.
+    out.more_events = out.demanded;
     for (const auto& parting : input_.partings) {
       const auto& seen = *std::find_if(evidence_.begin(), evidence_.end(), [&](const auto& each) {
         return each.ids.front() == parting.ids.front();
@@ -103,7 +113,8 @@ class ModelSearch {
       step.late = late(parting, seen);
       out.steps.push_back(std::move(step));
       if (!wide) continue;
-      for (std::size_t t = 0; t < parting.after; ++t) {
+      const auto last = mode == Mode::kWhole ? seen.steps.size() : parting.after;
+      for (std::size_t t = 0; t < last; ++t) {
         out.more_events.insert(base::symbol_of(seen.steps[t].event));
       }
     }
@@ -183,6 +194,7 @@ class ModelSearch {
       if (known->guarded->model) {
         const auto& edits = known->guarded->edits;
         known->evidence = ways(evidence);
+        if (mode == Mode::kWhole) ask_to_the_end(known->evidence);
         known->search = std::make_unique<EditSearch>(*known->guarded->model, edits, known->evidence,
                                                      context_.stop());
         for (std::size_t i = 0; i < edits.size() && mode == Mode::kCautious; ++i) {
@@ -218,10 +230,13 @@ class ModelSearch {
     known = out;
     out->edits = compiler::edits_in_scope(domain_.ast, *domain_.typed, domain_.forms,
                                           scope(mode == Mode::kCautious ? Mode::kOpen : mode));
-    if (mode == Mode::kWide) keep_few(out->edits);
+    if (mode == Mode::kWide) keep_few(out->edits, {});
+    if (mode == Mode::kWhole) keep_few(out->edits, parting_events());
     result_.edits = std::max(result_.edits, out->edits.size());
     std::size_t horizon = 1;
-    for (const auto& seen : evidence_) horizon = std::max(horizon, seen.needed());
+    for (const auto& seen : evidence_) {
+      horizon = std::max(horizon, mode == Mode::kWhole ? seen.steps.size() : seen.needed());
+    }
     std::string why;
     do {
       const auto text = compiler::guarded_text(domain_.ast, *domain_.typed, domain_.files,
@@ -261,14 +276,28 @@ class ModelSearch {
     return evidence;
   }
 
+  std::set<std::string> parting_events() const {
+    std::set<std::string> out;
+    for (const auto& parting : input_.partings) out.insert(base::symbol_of(parting.step.event));
+    return out;
+  }
+
+  /// Requires of a repaired model to follow each run to its end, not to the first difference alone.
+  static void ask_to_the_end(std::vector<Evidence>& evidence) {
+    for (auto& seen : evidence) {
+      if (seen.divergence) seen.divergence = seen.steps.size();
+    }
+  }
+
   /// Far from the step, conditions are only dropped and effects only mended: there are too many new
   /// ones.
-  static void keep_few(std::vector<Edit>& edits) {
+  static void keep_few(std::vector<Edit>& edits, const std::set<std::string>& near) {
     constexpr std::size_t kMostWide = 600;
     using Kind = Edit::Kind;
-    std::erase_if(edits, [](const Edit& edit) {
-      return edit.kind == Kind::kAddCondition || edit.kind == Kind::kNarrow ||
-             edit.kind == Kind::kNarrowEvent || edit.kind == Kind::kRequire;
+    std::erase_if(edits, [&](const Edit& edit) {
+      const bool narrows = edit.kind == Kind::kNarrow || edit.kind == Kind::kNarrowEvent ||
+                           edit.kind == Kind::kRequire;
+      return edit.kind == Kind::kAddCondition || (narrows && !near.contains(edit.event));
     });
     std::stable_sort(edits.begin(), edits.end(),
                      [](const Edit& a, const Edit& b) { return a.oddity < b.oddity; });

@@ -38,6 +38,12 @@ struct Proposal {
   bool open = false;                       // it leaves open what happens
   bool hides_failure = false;  // of a plan: the failure is taken, and nothing is done about it
   Verdict verdict;
+  std::size_t unexplained = 0;  // runs that count against it in the ranking
+  /// It explains the first difference, and no run follows it to its end.
+  bool only_begins() const {
+    const bool of_model = changes == Changes::kModel || changes == Changes::kBinding;
+    return of_model && !precaution && verdict.runs_whole == 0;
+  }
   /// Effect on the traces. For a change of the model alone, computed by the ranking.
   std::optional<TraceEffects> effects;
   /// Numbers of the proposals that the ranking cannot tell from it by the observations, by size, by

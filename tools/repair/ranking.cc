@@ -1,12 +1,12 @@
 // The order of proposals.
 //
-// Proposals that admit the runs are ordered by size, then precautions before splits of the start
-// before other changes, then specific ones before those that let anything happen, then by the
-// runs that they admit to their end, and at last by oddity. Only the first few have their traces
-// compared with the model's: among equals the change that permits the fewest new traces comes
-// first, then the one that forbids the fewest. Neighbours that the order cannot distinguish are
-// tied, which is told. Proposals as well founded as the first one that admit fewer runs to their
-// end were refuted by experiments and are dropped.
+// First come proposals that follow most runs to their end; those that follow none come last. Then
+// they are ordered by size, then precautions before splits of the start before other changes, then
+// specific ones before those that let anything happen, and at last by oddity. Only the first few
+// have their traces compared with the model's: among equals the change that permits the fewest new
+// traces comes first, then the one that forbids the fewest. Neighbours that the order cannot
+// distinguish are tied, which is told. Proposals as well founded as the first one that admit fewer
+// runs to their end were refuted by experiments and are dropped.
 
 #include "tools/repair/ranking.h"
 
@@ -27,9 +27,26 @@ int group_of(const Proposal& proposal) {
 }
 
 bool likelier(const Proposal& a, const Proposal& b) {
-  // A proposal that lets anything happen explains every run: it comes after more specific ones.
-  return std::tuple(a.size, group_of(a), a.open, ~a.verdict.runs_whole, a.oddity) <
-         std::tuple(b.size, group_of(b), b.open, ~b.verdict.runs_whole, b.oddity);
+  return std::tuple(a.only_begins(), a.unexplained, a.size, group_of(a), a.open,
+                    ~a.verdict.runs_whole, a.oddity) < std::tuple(b.only_begins(), b.unexplained,
+                                                                  b.size, group_of(b), b.open,
+                                                                  ~b.verdict.runs_whole, b.oddity);
+}
+
+/// Counts the runs that each proposal does not follow to their end. Precautions and splits of the
+/// start set runs aside on purpose. A proposal that lets anything happen explains every run: it
+/// counts as no better than the best specific one.
+void count_unexplained(std::size_t runs, std::vector<Proposal>& proposals) {
+  auto least = runs;
+  for (auto& each : proposals) {
+    const bool sets_aside = each.precaution || each.changes == Proposal::Changes::kScenario;
+    each.unexplained = sets_aside ? 0 : runs - std::min(runs, each.verdict.runs_whole);
+    if (!each.open) least = std::min(least, each.unexplained);
+  }
+  for (auto& each : proposals) {
+    const bool any_specific = least < runs;
+    if (each.open && any_specific) each.unexplained = std::max(each.unexplained, least);
+  }
 }
 
 /// Among equals, the change that permits the fewest new traces, then the one that forbids the
@@ -78,6 +95,7 @@ void drop_refuted(std::vector<Proposal>& proposals) {
 
 Unranked rank_proposals(const RepairInput& input, std::size_t limit,
                         std::vector<Proposal>& proposals, Context& context) {
+  count_unexplained(input.runs, proposals);
   std::stable_sort(proposals.begin(), proposals.end(), likelier);
   if (input.experiments > 0) drop_refuted(proposals);
   Unranked out;

@@ -105,6 +105,10 @@ std::vector<std::string> proposal_sentences(const Proposal& proposal, std::size_
   }
   out.push_back(first + fmt::format("; traces lost: {}, gained: {}.", number_text(effects.lost),
                                     number_text(effects.gained)));
+  if (proposal.only_begins()) {
+    out.emplace_back(
+        "It explains the first difference only: no run follows the changed model to its end.");
+  }
   out.insert(out.end(), proposal.evidence.begin(), proposal.evidence.end());
   if (proposal.precaution) {
     out.emplace_back(
@@ -267,6 +271,7 @@ std::string repair_json(const RepairResult& result) {
                          {"read_by_world", proposal.read_by_world},
                          {"precaution", proposal.precaution},
                          {"hides_failure", proposal.hides_failure},
+                         {"only_begins", proposal.only_begins()},
                          {"runs_consistent", proposal.verdict.runs_consistent},
                          {"runs_to_the_end", proposal.verdict.runs_whole},
                          {"runs", result.runs},

@@ -17,17 +17,18 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kUnparks = "[drawer,time] Terminates(OpenDrawer(drawer),Parked(),time).\n";
+const std::string kReopens = "[drawer,time] Initiates(Park(),Open(drawer),time).\n";
 const std::string kParks = "[drawer,time] Initiates(CloseDrawer(drawer),Parked(),time).\n";
 
-/// The model forgets two effects, which show one after the other.
-struct TwoMistakes : TwoModels {
-  TwoMistakes() { world("load opens.e\n\n" + kUnparks + kParks); }
+/// The model forgets three effects, which show one after the other: no two edits mend all of it.
+struct ThreeMistakes : TwoModels {
+  ThreeMistakes() { world("load opens.e\n\n" + kUnparks + kParks + kReopens); }
 };
 
-TEST_CASE("two mistakes: two rounds, then a clean run with its claim, and one patch") {
+TEST_CASE("three mistakes: two rounds, then a clean run with its claim, and one patch") {
   for (const std::string execution : {"open-loop", "closed-loop"}) {
     CAPTURE(execution);
-    const TwoMistakes cli;
+    const ThreeMistakes cli;
     json_of(cli,
             {"run", "two/own.yaml", "--out", "out", "--epsilon", "0.2", "--execution", execution},
             1);
@@ -68,6 +69,7 @@ TEST_CASE("two mistakes: two rounds, then a clean run with its claim, and one pa
     const auto model = cli.read("two/opens.e");
     CHECK(model.find(kUnparks) != std::string::npos);
     CHECK(cli.read("two/domain.e").find(kParks) != std::string::npos);
+    CHECK(cli.read("two/domain.e").find(kReopens) != std::string::npos);
     CHECK(
         json_of(cli, {"run", "two/own.yaml", "--out", "again", "--epsilon", "0.2"}).at("verdict") ==
         "no-discrepancy");
@@ -75,7 +77,7 @@ TEST_CASE("two mistakes: two rounds, then a clean run with its claim, and one pa
 }
 
 TEST_CASE("the rounds are bounded, and --apply writes the user's files at last") {
-  const TwoMistakes cli;
+  const ThreeMistakes cli;
   json_of(cli, {"run", "two/own.yaml", "--out", "out"}, 1);
   const auto report = json_of(cli, {"repair", "out", "--loop", "--out", "one", "--rounds", "1"}, 1);
   CHECK(report.at("end") == "rounds");
@@ -87,7 +89,7 @@ TEST_CASE("the rounds are bounded, and --apply writes the user's files at last")
 }
 
 TEST_CASE("a file that the scenario names by an absolute path has no copy, and stays as it is") {
-  const TwoMistakes cli;
+  const ThreeMistakes cli;
   cli.replace("two/own.yaml", "opens.e", (cli.folder() / "two" / "opens.e").string());
   json_of(cli, {"run", "two/own.yaml", "--allow-outside", "--out", "out"}, 1);
   const auto before = cli.read("two/opens.e");
@@ -99,11 +101,12 @@ TEST_CASE("a file that the scenario names by an absolute path has no copy, and s
 }
 
 TEST_CASE("an error in a later round: what was done is on record") {
-  const TwoMistakes cli;
+  const ThreeMistakes cli;
   // The second change is one of a file that is named by an absolute path.
   cli.replace("two/opens.e", "load domain.e",
               "load " + (cli.folder() / "two" / "domain.e").string());
-  cli.world("load " + (cli.folder() / "two" / "opens.e").string() + "\n\n" + kUnparks + kParks);
+  cli.world("load " + (cli.folder() / "two" / "opens.e").string() + "\n\n" + kUnparks + kParks +
+            kReopens);
   json_of(cli, {"run", "two/own.yaml", "--allow-outside", "--out", "out"}, 1);
   const auto failed = cli.parallax(
       {"repair", "out", "--loop", "--out", "fixed", "--allow-outside", "--apply", "1"});
