@@ -292,6 +292,15 @@ TEST_CASE("branches: sleeps in a row that others cannot tell apart are one") {
   CHECK(many.graph->branches.size() == one.graph->branches.size());
   CHECK(many.terminals() == one.terminals());
   CHECK(Ways(many).all == Ways(one).all);
+  // Clean-ups of a halted branch can look at its own variable.
+  const auto cleaned = by_turns(
+      "(pursue (go2) (let ((n 0)) (unwind-protect (progn (sleep 1) (setf n 1) (sleep 1)) (if (= n "
+      "0) "
+      "(go1) (pick)))))");
+  REQUIRE(cleaned.graph.has_value());
+  const auto ways = Ways(cleaned).all;
+  CHECK(std::any_of(ways.begin(), ways.end(),
+                    [](const auto& way) { return way.find("Go(r1)") != std::string::npos; }));
   // Between these the other branch can look at the variable.
   const auto seen = by_turns(
       "(let ((k 0)) (par (dotimes (i 3) (sleep 1) (setf k i)) (seq (sleep 1) (dotimes (i k) (sig)))"
