@@ -38,9 +38,9 @@ void claim_executions(const Scenario& scenario, const Tally& tally, DrawnStarts 
   const auto bound = certified_bound(tally, criterion.confidence_level);
   stream.certified_level = bound.confidence_level;
   stream.certified_epsilon = bound.epsilon;
-  stream.claim =
-      loop_claim(tally, criterion, scenario.comparison(),
-                 {loop.initial_states, stream.starts.tried, loop.has_weights, std::move(drawn)});
+  stream.claim = loop_claim(tally, criterion, scenario.comparison(),
+                            {loop.initial_states, stream.starts.tried, loop.has_weights,
+                             std::move(drawn), std::ssize(stream.starts.unrealisable)});
   stream.caveats = caveats(tally, criterion, std::nullopt);
   if (loop.unfinished == 0) return;
   stream.certified_epsilon = 1.0;

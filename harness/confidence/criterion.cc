@@ -260,11 +260,12 @@ std::string loop_claim(const Tally& tally, const CriterionSpec& spec, Comparison
                        const StartLaw& starts) {
   const std::string_view valid = tally.rejected() > 0 ? "the valid part of " : "";
   const auto drawn = drawn_from(fmt::format("{}its region", valid), starts.drawn);
+  const std::string_view real = starts.without_start > 0 ? " that a start can have" : "";
   const auto from =
       starts.initial_states == 1
-          ? fmt::format("the only initial state{}, {},",
+          ? fmt::format("the only initial state{}{}, {},", real,
                         starts.has_weights ? " with a weight in `start_weights`" : "", drawn)
-          : fmt::format("{} initial states, {} and {}, then {},", starts.initial_states,
+          : fmt::format("{} initial states{}, {} and {}, then {},", starts.initial_states, real,
                         likely_text(starts.has_weights),
                         tried_text({.all = starts.initial_states, .tried = starts.tried}), drawn);
   return claim_about(tally, spec, fmt::format("executions of the plan from {}", from),

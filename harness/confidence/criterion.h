@@ -104,6 +104,7 @@ struct StartLaw {
   std::int64_t initial_states = 0, tried = 0;
   bool has_weights = false;
   DrawnStarts drawn{};
+  std::int64_t without_start = 0;  // besides: initial states that no start can be
 };
 /// The same of executions of a plan from any of the model's initial states: "with 99 % confidence,
 /// fewer than 5 % of executions of the plan from 3 initial states, each equally likely and each

@@ -208,6 +208,9 @@ TEST_CASE("an initial state that no start can be is named, and keeps the verdict
       CHECK(states.at("unrealisable").size() == 4);
     } else {
       CHECK(trace.at("initial_states") == 4);
+      CHECK(trace.at("claim").get<std::string>().find(
+                "from 4 initial states that a start can have, each equally likely") !=
+            std::string::npos);
       CHECK(trace.at("initial_states_tried") == 4);
       CHECK(trace.at("initial_states_without_start").size() == 4);
     }
