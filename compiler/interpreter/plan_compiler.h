@@ -134,7 +134,7 @@ struct ParBranches {
   std::optional<std::uint32_t> exit;  // `pursue`: where the first value goes on
 };
 
-/// Where executions of the real plan may differ from those of the code.
+/// A place at which executions of the real plan may differ from those of the code.
 struct CodeGap {
   std::string text;
   DatumId source;
@@ -166,8 +166,8 @@ struct PlanCode {
   bool multiple_values = false;  // some form gives several values
 };
 
-/// What runs: a function, or the forms at top level of one file; otherwise the forms at top level
-/// of all files, or else the last function defined.
+/// The code that runs: a function, or the forms at top level of one file. If neither is given, the
+/// forms at top level of all files, or the last function defined if there are none.
 struct PlanStart {
   std::optional<std::string> function = std::nullopt;
   std::optional<base::FileId> forms = std::nullopt;

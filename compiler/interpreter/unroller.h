@@ -34,8 +34,8 @@ struct UnrollOptions {
   bool failures_by_reason = false;
   bool interleave = false;  // explore every order of the performs in branches of `par`
   const std::atomic<bool>* stop = nullptr;  // raised to end it early: CPL054
-  /// What begins later need not be unrolled, where the whole has too many locations. None: all of
-  /// it is wanted.
+  /// If the whole graph has too many locations, those that no execution reaches before this
+  /// timepoint are left out. None: the whole graph is wanted.
   std::optional<std::int64_t> horizon = std::nullopt;
 };
 

@@ -136,6 +136,16 @@ bool BindingCursor::symbol(std::string_view what, std::string& package, std::str
   return name(what, out);
 }
 
+bool BindingCursor::types(std::vector<std::string>& out) {
+  do {
+    std::string package;  // types are compared without it
+    std::string type;
+    if (!symbol("the name of a type", package, type)) return false;
+    out.push_back(std::move(type));
+  } while (take("|"));
+  return true;
+}
+
 bool BindingCursor::variable(std::string& out) {
   skip_blanks();
   const auto length = variable_length(rest());

@@ -54,6 +54,8 @@ class BindingCursor {
   bool name(std::string_view what, std::string& out);
   /// A name, perhaps behind the prefix of a package.
   bool symbol(std::string_view what, std::string& package, std::string& out);
+  /// `going | driving`: at least one, without their packages.
+  bool types(std::vector<std::string>& out);
   bool variable(std::string& out);
   /// (?a ?b), with or without commas; nothing at all is an empty list.
   bool variables(std::vector<std::string>& out);

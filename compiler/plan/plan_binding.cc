@@ -44,7 +44,6 @@ class BindingParser {
   void parse_query(std::size_t begin);
   void parse_goal(std::size_t begin);
   void parse_object(std::size_t begin);
-  bool types_of(std::vector<std::string>& types);
   bool parse_alias(Alias alias);
   bool parse_keys(BindingEntry& entry);
   bool parse_key(BindingEntry& entry);
@@ -197,16 +196,6 @@ void BindingParser::parse_object(std::size_t begin) {
   object.failure_class = std::move(entry.failure_class);
   object.failure_source = entry.failure_source;
   out_.objects.push_back(std::move(object));
-}
-
-bool BindingParser::types_of(std::vector<std::string>& types) {
-  do {
-    std::string package;  // types are compared without it
-    std::string type;
-    if (!at_.symbol("the name of a type", package, type)) return false;
-    types.push_back(std::move(type));
-  } while (at_.take("|"));
-  return true;
 }
 
 bool BindingParser::parse_alias(Alias alias) {
@@ -368,7 +357,7 @@ void BindingParser::parse_entry() {
   entry.kind = at_.take_word("motion") ? PerformKind::kMotion : PerformKind::kAction;
   if (entry.kind == PerformKind::kAction) at_.take_word("action");
   std::vector<std::string> types;
-  if (!types_of(types)) return;
+  if (!at_.types(types)) return;
   entry.source = at_.range(begin, at_.position());
   if (at_.take("=")) {
     parse_alias({entry.kind, std::move(types), {}, {}, {}});

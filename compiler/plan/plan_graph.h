@@ -126,8 +126,8 @@ struct PlanHandler {
 /// another way than the real language may.
 enum class GapKind : std::uint8_t { kOrder, kMeaning };
 
-/// Where executions of the real plan may differ from the graph's: a claim about all of them has no
-/// proof.
+/// A place at which executions of the real plan may differ from those of the graph. No claim about
+/// all executions of such a plan is proved.
 struct PlanGap {
   std::string text;  // a noun: "the other orders of `par`"
   base::SourceRange source;

@@ -10,6 +10,7 @@
 
 #include "compiler/base/diagnostic.h"
 #include "harness/campaign/judge.h"
+#include "harness/campaign/prepared_trace.h"
 #include "harness/campaign/repetition.h"
 #include "harness/campaign/sample_row.h"
 #include "harness/campaign/sample_runner.h"
@@ -29,31 +30,6 @@ struct TrialOptions {
   /// Called in the worker's thread with the recorded motion of each sample.
   std::function<void(const SampleRecord&, const MotionLog&)> moved = {};
 };
-
-/// The data that a trace is simulated with.
-struct PreparedTrace {
-  StartCuboid start;
-  std::vector<ActionCall> calls;
-  Sampler sampler;
-};
-/// Derives the data. Reports what the parts report, and kVariableNotSettable for a start that the
-/// simulator cannot be put into.
-base::Result<PreparedTrace> prepare_trace(const Scenario& scenario,
-                                          const std::vector<GroundFluent>& fluents,
-                                          const SimulatorInfo& simulator,
-                                          const CampaignTrace& trace, base::DiagnosticSink& sink);
-
-/// Makes the sampler for the starts of an initial state. Reports what the mapping and the sampler
-/// report.
-base::Result<Sampler> start_sampler(const Scenario& scenario,
-                                    const std::vector<GroundFluent>& fluents,
-                                    const std::set<std::string>& true_at_start,
-                                    base::DiagnosticSink& sink);
-
-/// Why no start of the world has this initial state, in a sentence; none: some start has it.
-std::optional<std::string> why_no_start(const Scenario& scenario,
-                                        const std::vector<GroundFluent>& fluents,
-                                        const std::set<std::string>& true_at_start);
 
 /// The shared state of the simulations of one command: workers with a simulator each, the info of
 /// that simulator, the model's fluents, and the count of consecutive losses, which goes on from

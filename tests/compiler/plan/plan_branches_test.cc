@@ -307,7 +307,7 @@ TEST_CASE("branches: sleeps in a row that others cannot tell apart are one") {
       "))");
   REQUIRE(seen.graph.has_value());
   CHECK(Ways(seen).all == std::set<std::string>{"DONE", "Signal() DONE", "Signal() Signal() DONE"});
-  // What a branch does behind its last `sleep` comes when it wakes up, not before.
+  // The code behind the last `sleep` of a branch runs when the branch wakes up, not before.
   const auto fails = by_turns("(par (seq (sleep 1) (sleep 1) (fail 'object-unreachable)) (go1))");
   REQUIRE(fails.graph.has_value());
   CHECK(Ways(fails).all ==

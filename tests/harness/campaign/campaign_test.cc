@@ -391,30 +391,6 @@ TEST_CASE("a lost run gets the same start and seed once more, then counts as a f
   CHECK(result->verdict == CampaignVerdict::kNoDiscrepancy);
 }
 
-TEST_CASE("a simulation whose simulator throws is lost with its words, and the others go on") {
-  Bench bench;
-  const auto start = drawn_start(bench, 1, 5);
-  bench.script.loses = [&](const State& s) -> bool {
-    if (s == start) throw std::runtime_error("no memory on the device");
-    return false;
-  };
-  const auto result = bench.run();
-  REQUIRE(result.has_value());
-  const auto& trace = result->traces[0];
-  CHECK(trace.lost == 1);
-  REQUIRE(trace.losses.size() == 1);
-  CHECK(trace.losses[0].kind.find("the simulator threw \"no memory on the device\"") !=
-        std::string::npos);
-  CHECK(trace.clean >= 90);
-  CHECK(result->verdict == CampaignVerdict::kNoDiscrepancy);
-}
-
-TEST_CASE("a promise that the program itself broke is no lost simulation") {
-  Bench bench;
-  bench.script.loses = [](const State&) -> bool { throw base::ContractViolation("broken"); };
-  CHECK_THROWS_AS(bench.run(), base::ContractViolation);
-}
-
 TEST_CASE("runs lost in a row end the campaign as inconclusive, and it can be continued") {
   Bench bench;
   bool broken = true;

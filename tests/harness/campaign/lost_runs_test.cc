@@ -1,4 +1,4 @@
-// Lost runs of simulators that cannot promise the same run for the same start and seed.
+// Lost runs: of simulators that throw, or cannot promise the same run for the same start and seed.
 
 #include <algorithm>
 #include <random>
@@ -168,6 +168,30 @@ TEST_CASE("a simulator that crashes where it should fail earns no more false cla
   CAPTURE(false_claims);
   CHECK(false_claims <= 2.0 * (1.0 - kConfidence) * kCampaigns);
   CHECK(false_claims > 0);  // claims that are wrong by chance show that the set-up can tell
+}
+
+TEST_CASE("a simulation whose simulator throws is lost with its words, and the others go on") {
+  Bench bench;
+  const auto start = drawn_start(bench, 1, 5);
+  bench.script.loses = [&](const State& s) -> bool {
+    if (s == start) throw std::runtime_error("no memory on the device");
+    return false;
+  };
+  const auto result = bench.run();
+  REQUIRE(result.has_value());
+  const auto& trace = result->traces[0];
+  CHECK(trace.lost == 1);
+  REQUIRE(trace.losses.size() == 1);
+  CHECK(trace.losses[0].kind.find("the simulator threw \"no memory on the device\"") !=
+        std::string::npos);
+  CHECK(trace.clean >= 90);
+  CHECK(result->verdict == CampaignVerdict::kNoDiscrepancy);
+}
+
+TEST_CASE("a promise that the program itself broke is no lost simulation") {
+  Bench bench;
+  bench.script.loses = [](const State&) -> bool { throw base::ContractViolation("broken"); };
+  CHECK_THROWS_AS(bench.run(), base::ContractViolation);
 }
 
 }  // namespace
