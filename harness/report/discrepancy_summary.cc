@@ -171,7 +171,7 @@ class Account {
       out += fmt::format("     {} {}\n",
                          base::counted(static_cast<std::int64_t>(count), "event", "events"), where);
     };
-    left_out(first, "before");
+    left_out(first, "before these");
     std::vector<std::vector<std::string>> rows;
     for (auto i = first; i < last; ++i) {
       auto row = step(i);
@@ -186,7 +186,7 @@ class Account {
       out += painted(line, "31", color && line.starts_with("  *")) + '\n';
       begin = end + 1;
     }
-    left_out(step_count() - last, "behind");
+    left_out(step_count() - last, "after these");
   }
 
   void fluents(std::string& out) const {

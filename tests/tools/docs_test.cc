@@ -1,7 +1,6 @@
 // Checks that the documentation describes what the program does.
 
 #include <doctest/doctest.h>
-#include <fmt/format.h>
 
 #include <fstream>
 #include <regex>
@@ -10,6 +9,7 @@
 
 #include "compiler/base/diagnostic.h"
 #include "tests/tools/cli_fixture.h"
+#include "tests/tools/rounded.h"
 
 namespace parallax::test {
 namespace {
@@ -58,7 +58,7 @@ TEST_CASE("every command of the README is one that the program knows") {
   const CliFixture cli;
   const auto help = cli.parallax({"--help"}).out;
   const auto readme = document("README.md");
-  const std::regex command("parallax ([a-z]+) ");
+  const std::regex command("parallax ([a-z]+)[ `]");
   std::set<std::string> seen;
   for (auto it = std::sregex_iterator(readme.begin(), readme.end(), command);
        it != std::sregex_iterator(); ++it) {
@@ -68,20 +68,6 @@ TEST_CASE("every command of the README is one that the program knows") {
   for (const auto& name : seen) {
     CHECK_MESSAGE(help.find("  " + name + " ") != std::string::npos, "README names " << name);
   }
-}
-
-/// The text with four digits of each number: the last ones depend on the machine.
-std::string rounded(const std::string& text) {
-  const std::regex number("-?[0-9]+\\.[0-9]+");
-  std::string out;
-  auto from = text.begin();
-  for (auto it = std::sregex_iterator(text.begin(), text.end(), number);
-       it != std::sregex_iterator(); ++it) {
-    out.append(from, text.begin() + it->position());
-    out += fmt::format("{:.4g}", std::stod(it->str()));
-    from = text.begin() + it->position() + it->length();
-  }
-  return out.append(from, text.end());
 }
 
 TEST_CASE("the README's first run prints what the README shows") {
