@@ -7,6 +7,7 @@
 
 #include "compiler/base/json.h"
 #include "harness/campaign/result_json.h"
+#include "harness/simulator/arithmetic.h"
 #include "harness/simulator/command_files.h"
 #include "harness/simulator/state_json.h"
 
@@ -244,6 +245,7 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
   header.scenario_hash = options.scenario_hash;
   header.seed = options.seed;
   header.tool_version = options.tool_version;
+  header.arithmetic = arithmetic_digits();
   header.simulator = simulator;
   header.simulator.parameters.clear();
   header.simulator.actions.clear();
@@ -257,6 +259,7 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
 
 std::string encode(const JournalHeader& header) {
   auto out = json_of(header);
+  if (!header.arithmetic.empty()) out["arithmetic"] = header.arithmetic;
   if (!header.command_hash.empty()) out["simulator"]["command_hash"] = header.command_hash;
   if (header.max_runs > 0) out["max_runs"] = header.max_runs;
   out["options"] = base::parse_ordered_json(header.options);
@@ -364,6 +367,7 @@ std::variant<JournalHeader, ForeignLine> decode_header(std::string_view line) tr
   header.scenario_hash = get<std::string>(object, "scenario_hash");
   header.seed = get<std::uint64_t>(object, "seed");
   header.tool_version = get<std::string>(object, "tool_version");
+  if (object.contains("arithmetic")) header.arithmetic = get<std::string>(object, "arithmetic");
   const auto& simulator = field(object, "simulator");
   header.simulator.name = get<std::string>(simulator, "name");
   header.simulator.version = get<std::string>(simulator, "version");
@@ -396,6 +400,10 @@ bool command_changed(const JournalHeader& recorded, const std::string& command_h
   return !recorded.command_hash.empty() && recorded.command_hash != command_hash;
 }
 
+bool arithmetic_changed(const JournalHeader& recorded, const std::string& arithmetic) {
+  return !recorded.arithmetic.empty() && recorded.arithmetic != arithmetic;
+}
+
 std::optional<HeaderDifference> header_difference(const JournalHeader& recorded,
                                                   const JournalHeader& now) {
   auto before = json_of(recorded);
@@ -406,6 +414,9 @@ std::optional<HeaderDifference> header_difference(const JournalHeader& recorded,
     after.erase(name);
   }
   if (auto found = differing(before, after, {})) return found;
+  if (arithmetic_changed(recorded, now.arithmetic)) {
+    return HeaderDifference{"processor's arithmetic", recorded.arithmetic, now.arithmetic};
+  }
   if (command_changed(recorded, now.command_hash)) {
     return HeaderDifference{"simulator's program or script", recorded.command_hash,
                             now.command_hash};

@@ -25,6 +25,7 @@ struct JournalHeader {
   std::string scenario_hash;
   std::uint64_t seed = 0;
   std::string tool_version;
+  std::string arithmetic;   // of its processor (arithmetic_digits); empty: an older journal
   SimulatorInfo simulator;  // without parameters and actions: the scenario was checked against them
   std::string command_hash;   // over the files of its command; empty: built in, or an older journal
   std::int64_t max_runs = 0;  // of a trace; 0: as the criterion needs
@@ -70,6 +71,9 @@ struct HeaderDifference {
   std::string field;  // "seed", "options.criterion.epsilon"
   std::string recorded, now;
 };
+/// Whether the run was begun on a processor that calculates otherwise, as far as is known.
+bool arithmetic_changed(const JournalHeader& recorded, const std::string& arithmetic);
+
 std::optional<HeaderDifference> header_difference(const JournalHeader& recorded,
                                                   const JournalHeader& now);
 

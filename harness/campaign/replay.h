@@ -40,8 +40,9 @@ struct ReplayResult {
   std::uint64_t seed = 0;
   std::string reason;  // for kCannot
   std::optional<ReplayDifference> difference;
-  std::size_t timepoints = 0;  // compared
-  std::string digest;          // recorded
+  std::size_t timepoints = 0;     // compared
+  std::string digest;             // recorded
+  bool other_arithmetic = false;  // recorded on a processor that calculates otherwise
 };
 
 /// One recorded simulation with what was asked of the simulator.

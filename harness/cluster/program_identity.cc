@@ -11,7 +11,7 @@
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "compiler/base/sha256.h"
-#include "harness/cluster/arithmetic.h"
+#include "harness/simulator/arithmetic.h"
 
 namespace parallax::harness {
 namespace {

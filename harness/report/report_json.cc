@@ -376,6 +376,7 @@ std::string replay_json(const ReplayResult& result) {
                      {"timepoints", result.timepoints},
                      {"digest", result.digest}};
   if (!result.reason.empty()) out["reason"] = result.reason;
+  if (result.other_arithmetic) out["other_arithmetic"] = true;
   if (const auto& difference = result.difference) {
     out["difference"] = {{"timepoint", difference->timepoint},
                          {"variable", difference->variable},

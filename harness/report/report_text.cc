@@ -419,6 +419,12 @@ int exit_code(const CampaignResult& result) {
   return result.verdict == CampaignVerdict::kDiscrepancy ? 1 : 4;
 }
 
+namespace {
+constexpr std::string_view kOtherArithmetic =
+    "it was recorded on a processor that calculates differently (other results of the mathematical "
+    "library in their last digits), so that a difference is to be expected here";
+}  // namespace
+
 std::string replay_text(const ReplayResult& result, const ReportStyle& style) {
   const auto paint = [&](std::string_view text, const char* color) {
     return style.color ? fmt::format("\x1b[{}m{}\x1b[0m", color, text) : std::string(text);
@@ -439,7 +445,8 @@ std::string replay_text(const ReplayResult& result, const ReportStyle& style) {
   const auto& difference = *result.difference;
   return head + paint("differs", "1;31") +
          fmt::format(" first at timepoint {} in {}\n", difference.timepoint, difference.variable) +
-         table({{"recorded", difference.recorded}, {"repeated", difference.repeated}}, 2);
+         table({{"recorded", difference.recorded}, {"repeated", difference.repeated}}, 2) +
+         (result.other_arithmetic ? wrapped("  note      ", kOtherArithmetic, 12) : "");
 }
 
 }  // namespace parallax::harness

@@ -10,6 +10,7 @@
 #include "compiler/base/folder_lock.h"
 #include "compiler/base/words.h"
 #include "compiler/base/write_gate.h"
+#include "harness/simulator/arithmetic.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
@@ -287,10 +288,16 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
   if (!check_suite_folder(options, sink)) return 0;
   const auto lock = base::FolderLock::claim(options.out, sink);
   if (!lock) return 0;
-  const SuiteIdentity identity{
-      kVersion,     program_hash(),         options.seed,
-      *shard,       options.paths,          options.only,
-      options.fast, options.commands.allow, invocation.form().allow_outside};
+  const SuiteIdentity identity{kVersion,
+                               program_hash(),
+                               harness::arithmetic_digits(),
+                               options.seed,
+                               *shard,
+                               options.paths,
+                               options.only,
+                               options.fast,
+                               options.commands.allow,
+                               invocation.form().allow_outside};
   const auto earlier = earlier_results(options, identity, sink);
   if (!earlier) return 0;
   const auto quarantine = quarantine_of(options, invocation);

@@ -37,6 +37,7 @@ void read_texts(const Json& object, const char* name, std::vector<std::string>& 
 Json to_json(const SuiteIdentity& identity) {
   return {{"tool_version", identity.version},
           {"program", identity.program},
+          {"arithmetic", identity.arithmetic},
           {"seed", identity.seed},
           {"shard", to_string(identity.shard)},
           {"paths", identity.paths},
@@ -50,6 +51,7 @@ SuiteIdentity identity_from_json(const Json& json) {
   SuiteIdentity out;
   read(json, "tool_version", out.version);
   read(json, "program", out.program);
+  read(json, "arithmetic", out.arithmetic);
   read(json, "seed", out.seed);
   std::string shard;
   read(json, "shard", shard);
@@ -169,6 +171,10 @@ std::string difference(const SuiteIdentity& a, const SuiteIdentity& b) {
   if (a.program != b.program) {
     return fmt::format("another build of version {} (program {:.12} and {:.12})", a.version,
                        a.program, b.program);
+  }
+  if (!a.arithmetic.empty() && !b.arithmetic.empty() && a.arithmetic != b.arithmetic) {
+    return fmt::format("processors that calculate differently (arithmetic {} and {})", a.arithmetic,
+                       b.arithmetic);
   }
   if (a.seed != b.seed) return fmt::format("seed {} and {}", a.seed, b.seed);
   if (a.shard.count != b.shard.count) {

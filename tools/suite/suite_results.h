@@ -16,8 +16,9 @@ namespace parallax::tools {
 
 /// Settings that make the results of two suites comparable.
 struct SuiteIdentity {
-  std::string version;  // of the program, for people
-  std::string program;  // program_hash()
+  std::string version;     // of the program, for people
+  std::string program;     // program_hash()
+  std::string arithmetic;  // of the processor (arithmetic_digits); empty: it is not known
   std::uint64_t seed = 1;
   Shard shard;
   std::vector<std::string> paths;

@@ -1,4 +1,4 @@
-#include "harness/cluster/arithmetic.h"
+#include "harness/simulator/arithmetic.h"
 
 #include <array>
 #include <bit>
