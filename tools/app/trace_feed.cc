@@ -122,6 +122,7 @@ EnumeratedTraces::EnumeratedTraces(const ScenarioModel& loaded, Context& context
                                    const runtime::PlanEnumeratorOptions& options)
     : EnumeratedTraces(loaded.compilation.model, context, options) {
   if (loaded.scenario.initial == harness::Initial::kWeights) loaded_ = &loaded;
+  if (loaded.scenario.mapping) unreached_.emplace(loaded);
 }
 
 base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
@@ -203,6 +204,7 @@ base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next_trace
   given_ = trace->number;
   auto converted = campaign_trace(*model_, *std::move(trace), *context_);
   if (!converted) return context_->sink().already_reported();
+  if (unreached_) unreached_->note(*converted);
   // Traces with the same events are distinguished by their initial states.
   if (split_initial_)
     converted->key += fmt::format(" from {}", fmt::join(converted->holds(0), ";"));
@@ -214,7 +216,10 @@ std::string EnumeratedTraces::exploration() const {
 }
 
 std::vector<std::string> EnumeratedTraces::bounds() const {
-  return open_end_texts(*model_, enumerator_->open_ends());
+  auto out = open_end_texts(*model_, enumerator_->open_ends());
+  if (!unreached_) return out;
+  for (auto& text : unreached_->texts(*context_)) out.push_back(std::move(text));
+  return out;
 }
 
 base::Known EnumeratedTraces::admits(
@@ -243,10 +248,11 @@ base::Result<std::optional<harness::TraceStarts>> EnumeratedTraces::starts(
     if (!parts) return std::optional<harness::TraceStarts>();
     out.parts = *std::move(parts);
   } else {
-    for (auto& state : found.states) {
-      if (state != own) out.states.push_back(std::move(state));
+    for (const auto& state : found.states) {
+      if (state != own) out.states.push_back(state);
     }
   }
+  if (unreached_ && !found.more) unreached_->note(trace.number, found.states);
   if (loaded_ != nullptr && !weigh(out, told_by)) return context_->sink().already_reported();
   if (out.more || out.states.size() > 1 || out.states.front() != own) {
     told_by_[trace.number] = std::move(told_by);

@@ -13,6 +13,7 @@
 #include "tools/app/context.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/start_weights.h"
+#include "tools/app/unreached_starts.h"
 
 namespace parallax::tools {
 
@@ -67,6 +68,7 @@ class EnumeratedTraces final : public harness::TraceFeed {
   std::unique_ptr<runtime::SolverSession> session_;
   std::unique_ptr<runtime::PlanEnumerator> enumerator_;
   std::int64_t given_ = 0;  // the number of the last trace
+  std::optional<UnreachedStarts> unreached_;
 };
 
 /// The trace as campaigns have it, with what the plan says of its events. Reports
