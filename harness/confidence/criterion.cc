@@ -278,13 +278,13 @@ namespace {
 std::string not_covered_text(const std::vector<std::string>& fluents) {
   constexpr std::size_t kFew = 6;
   if (fluents.size() <= kFew) {
-    return fmt::format("no regression evidence for: {}", fmt::join(fluents, ", "));
+    return fmt::format("the paper's rule says nothing of {}", fmt::join(fluents, ", "));
   }
   std::map<std::string, std::size_t> counts;
   for (const auto& fluent : fluents) ++counts[fluent.substr(0, fluent.find('('))];
   std::vector<std::string> parts;
   for (const auto& [symbol, count] : counts) parts.push_back(fmt::format("{} {}", count, symbol));
-  return fmt::format("no regression evidence for {} fluents: {}", fluents.size(),
+  return fmt::format("the paper's rule says nothing of {} fluents: {}", fluents.size(),
                      fmt::join(parts, ", "));
 }
 
@@ -306,7 +306,8 @@ std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec,
     }
     result.push_back(std::move(text));
   }
-  if (paper_stopped_at && !tally.frame().not_covered.empty()) {
+  if (spec.kind == CriterionKind::kPaper && paper_stopped_at &&
+      !tally.frame().not_covered.empty()) {
     result.push_back(not_covered_text(tally.frame().not_covered));
   }
   return result;
