@@ -215,6 +215,20 @@ TEST_CASE("two runs say which values changed between them") {
   CHECK(has(cli.parallax({"diff", "r", "q"}).out, "were not compared: q kept no texts"));
 }
 
+TEST_CASE("a run that was killed in its search has kept its texts") {
+  const CliFixture cli;
+  cli.write("searched.yaml", "include: scenario.yaml\nsearch: 5000\n");
+  const auto journal = cli.folder() / "k/journal.ndjson";
+  ProcessOptions options;
+  options.signal_when = [&] {
+    std::ifstream in(journal);
+    const auto lines = std::count(std::istreambuf_iterator<char>(in), {}, '\n');
+    return lines > 2 ? SIGKILL : 0;
+  };
+  REQUIRE(cli.parallax({"run", "searched.yaml", "--out", "k"}, options).code == 128 + SIGKILL);
+  CHECK(fs::exists(cli.folder() / "k/inputs.json"));
+}
+
 TEST_CASE("a run that was killed can be told of when its files have changed") {
   const CliFixture cli;
   const auto journal = cli.folder() / "k/journal.ndjson";
