@@ -14,6 +14,7 @@
 #include <mutex>
 #include <thread>
 
+#include "compiler/base/clock_time.h"
 #include "compiler/base/json.h"
 #include "compiler/base/words.h"
 #include "harness/campaign/rates.h"
@@ -25,7 +26,7 @@
 namespace parallax::tools {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Clock = base::SteadyClock;
 using Json = nlohmann::ordered_json;
 
 constexpr auto kSlice = std::chrono::milliseconds(20);
@@ -34,9 +35,7 @@ constexpr auto kSlice = std::chrono::milliseconds(20);
 class TimedStop {
  public:
   TimedStop(double seconds, const std::atomic<bool>& other)
-      : end_(Clock::now() +
-             std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))),
-        thread_([this, &other] { watch(other); }) {}
+      : end_(base::from_now(seconds)), thread_([this, &other] { watch(other); }) {}
   ~TimedStop() {
     {
       const std::lock_guard lock(mutex_);
