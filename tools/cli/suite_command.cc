@@ -336,7 +336,9 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
       invocation.remark("ledger: " + text);
     }
   }
-  append_to_history(record, identity, options, invocation);
+  const LastPasses told(folder, "told");
+  append_to_history(record, identity, options, invocation,
+                    {caches ? &told : nullptr, &loop.runner});
   return conclude(record, options, invocation);
 }
 
