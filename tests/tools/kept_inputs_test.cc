@@ -203,8 +203,11 @@ TEST_CASE("two runs say which values changed between them") {
   CHECK_MESSAGE(has(refused.out, "not compared: q/inputs.json does not hold what the run read"),
                 refused.out);
   CHECK_FALSE(has(refused.out, "regions.cells.r2.x"));
-  CHECK(json_of(cli, {"diff", "r", "q"}, refused.code)["inputs"].is_null());
+  const auto why = json_of(cli, {"diff", "r", "q"}, refused.code);
+  CHECK(why["inputs"].is_null());
+  CHECK(why["inputs_refused"] == "q/inputs.json does not hold what the run read");
   CHECK(has(cli.parallax({"report", "r", "q", "-o", "two.html"}).err, "q/inputs.json does not"));
+  CHECK(has(cli.read("two.html"), "not compared: q/inputs.json does not hold what the run read"));
   CHECK_FALSE(has(cli.read("two.html"), "regions.cells.r2.x"));
   // So is a header's hash that is claimed for other texts.
   auto renamed = good;
