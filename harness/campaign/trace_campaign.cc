@@ -52,6 +52,7 @@ class TraceCampaign {
 
   base::Result<TraceOutcome> run() {
     if (context_.scenario.search.runs > 0) {
+      report_progress();  // a search tells nothing until it is over
       const auto end = search();
       if (!end) return context_.sink.already_reported();
       if (*end) return finished(**end);

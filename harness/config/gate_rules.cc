@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -20,48 +21,7 @@ namespace {
 constexpr std::array<std::string_view, 2> kPermissions = {"allowed", "forbidden"};
 constexpr std::array<std::string_view, 2> kUndecided = {"fails", "passes"};
 
-/// A rule that is `allowed` or `forbidden`.
-struct Rule {
-  std::string_view key;
-  bool* forbidden;
-};
-
-/// One section: what it forbids.
-class RuleSection {
- public:
-  /// `more`: its keys that are no such rules.
-  RuleSection(const YamlNode& node, std::string_view key, std::initializer_list<Rule> rules,
-              std::vector<std::string_view> more, base::DiagnosticSink& sink)
-      : key_(key), fields_(node, key_text(key), sink), sink_(sink), before_(sink.error_count()) {
-    auto known = std::move(more);
-    for (const auto& rule : rules) known.push_back(rule.key);
-    fields_.only(std::span<const std::string_view>(known));
-    for (const auto& rule : rules) read(rule);
-  }
-
-  YamlFields& fields() { return fields_; }
-
-  void read(const Rule& rule) {
-    const auto choice =
-        fields_.choice(rule.key, fmt::format("value of `{}`", rule.key), kPermissions);
-    *rule.forbidden = choice == std::size_t{1};
-    forbids_ = forbids_ || *rule.forbidden;
-  }
-  void forbids() { forbids_ = true; }
-
-  /// Reports a section that forbids nothing.
-  void finish() const {
-    if (forbids_ || sink_.error_count() != before_) return;
-    sink_.error(codes::kCaseExpectsNothing, fields_.node().range, key_);
-  }
-
- private:
-  std::string_view key_;
-  YamlFields fields_;
-  base::DiagnosticSink& sink_;
-  std::size_t before_;
-  bool forbids_ = false;
-};
+constexpr std::string_view kPhysics = to_string(Effect::kPhysics);
 
 /// Rules with an order, by section: the word, and what it demands.
 struct OrderedRule {
@@ -97,9 +57,87 @@ std::vector<std::string_view> model_rules() {
   return out;
 }
 
+/// A rule that is `allowed` or `forbidden`.
+struct Rule {
+  std::string_view key;
+  bool* forbidden;
+};
+
+/// One section: what it forbids.
+class RuleSection {
+ public:
+  /// `more`: its keys that are no such rules.
+  RuleSection(const YamlNode& node, std::string_view key, std::initializer_list<Rule> rules,
+              std::vector<std::string_view> more, base::DiagnosticSink& sink)
+      : key_(key), fields_(node, key_text(key), sink), sink_(sink), before_(sink.error_count()) {
+    auto known = std::move(more);
+    for (const auto& rule : rules) known.push_back(rule.key);
+    if (key != Key::kModels) fields_.belongs(Key::kModels, elsewhere_);
+    fields_.only(std::span<const std::string_view>(known));
+    for (const auto& rule : rules) read(rule);
+  }
+
+  YamlFields& fields() { return fields_; }
+
+  void read(const Rule& rule) {
+    const auto choice =
+        fields_.choice(rule.key, fmt::format("value of `{}`", rule.key), kPermissions);
+    *rule.forbidden = choice == std::size_t{1};
+    forbids_ = forbids_ || *rule.forbidden;
+  }
+  void forbids() { forbids_ = true; }
+
+  /// Reports a section that forbids nothing.
+  void finish() const {
+    if (forbids_ || sink_.error_count() != before_) return;
+    sink_.error(codes::kCaseExpectsNothing, fields_.node().range, key_);
+  }
+
+ private:
+  std::string_view key_;
+  std::vector<std::string_view> elsewhere_ = setting_rules();
+  YamlFields fields_;
+  base::DiagnosticSink& sink_;
+  std::size_t before_;
+  bool forbids_ = false;
+};
+
+/// A limit on how much worse a rate may be.
+void read_worse(const YamlFields& numbers, GateRules::Worse& out) {
+  numbers.number(Key::kConfidence, {0.5, 0.999999}, out.confidence);
+  numbers.number(Key::kMargin, kOpenUnit, out.margin);
+}
+
+bool asks_for_runs(const YamlFields& fields) {
+  const auto* node = fields.find(kPhysics);
+  return node != nullptr && (node->is_map() || (node->is_scalar() && node->text == Key::kRerun));
+}
+
+/// `physics: rerun`, or `physics: {rerun: {...}}` with its budget; none: it says something else, or
+/// is wrong, which is reported.
+std::optional<GateRules::Rerun> read_rerun(const YamlFields& fields, base::DiagnosticSink& sink) {
+  if (!asks_for_runs(fields)) return std::nullopt;
+  GateRules::Rerun out;
+  const auto* node = fields.find(kPhysics);
+  if (!node->is_map()) return out;
+  YamlFields physics(*node, key_text(kPhysics), sink);
+  physics.only({Key::kRerun});
+  const auto* budget = physics.require(Key::kRerun);
+  if (budget == nullptr) return std::nullopt;
+  YamlFields numbers(*budget, key_text(Key::kRerun), sink);
+  numbers.only({Key::kRuns, Key::kSeconds, Key::kSeed, Key::kConfidence, Key::kMargin});
+  numbers.integer(Key::kRuns, 1, kMaxRuns, out.runs);
+  numbers.number(Key::kSeconds, kTimeout, out.seconds);
+  numbers.integer(Key::kSeed, 0, std::numeric_limits<std::int64_t>::max(), out.seed);
+  read_worse(numbers, out.worse);
+  return out;
+}
+
 void read_setting_rules(const YamlFields& fields, std::vector<GateRules::SettingRule>& out) {
   for (const auto name : setting_rules()) {
+    if (name == kPhysics && asks_for_runs(fields)) continue;
     std::vector<std::string_view> words(kPermissions.begin(), kPermissions.end());
+    if (name == kPhysics) words.push_back(Key::kRerun);
     auto demand = GateRules::Demand::kForbidden;
     for (const auto& ordered : kOrderedRules) {
       if (ordered.section != name) continue;
@@ -123,7 +161,8 @@ GateRules::Models read_models(const YamlNode& node, base::DiagnosticSink& sink) 
                        {Key::kAxioms, &out.axioms}},
                       std::move(more), sink);
   read_setting_rules(section.fields(), out.settings);
-  if (!out.settings.empty()) section.forbids();
+  out.rerun = read_rerun(section.fields(), sink);
+  if (!out.settings.empty() || out.rerun) section.forbids();
   if (const auto* list = section.fields().find(Key::kProperties)) {
     out.properties = located_texts(*list, Key::kProperties, sink);
     if (!out.properties.empty()) section.forbids();
@@ -148,13 +187,19 @@ GateRules::Traces read_traces(const YamlNode& node, base::DiagnosticSink& sink) 
 
 GateRules::Runs read_runs(const YamlNode& node, base::DiagnosticSink& sink) {
   GateRules::Runs out;
-  RuleSection(node, Key::kRuns,
-              {{Key::kLostTraces, &out.lost_traces},
-               {Key::kGainedDiscrepancies, &out.gained_discrepancies},
-               {Key::kWorseVerdict, &out.worse_verdict},
-               {Key::kSettings, &out.settings}},
-              {}, sink)
-      .finish();
+  RuleSection section(node, Key::kRuns,
+                      {{Key::kLostTraces, &out.lost_traces},
+                       {Key::kGainedDiscrepancies, &out.gained_discrepancies},
+                       {Key::kWorseVerdict, &out.worse_verdict},
+                       {Key::kSettings, &out.settings}},
+                      {kPhysics}, sink);
+  constexpr std::array<std::string_view, 2> kWords = {"allowed", Key::kRerun};
+  if (!asks_for_runs(section.fields())) {
+    section.fields().choice(kPhysics, "value of `physics`", kWords);
+  }
+  out.rerun = read_rerun(section.fields(), sink);
+  if (out.rerun) section.forbids();
+  section.finish();
   return out;
 }
 
@@ -167,8 +212,7 @@ GateRules::Rates read_rates(const YamlNode& node, base::DiagnosticSink& sink) {
     YamlFields numbers(*worse, key_text(Key::kWorse), sink);
     numbers.only({Key::kConfidence, Key::kMargin});
     GateRules::Worse rule;
-    numbers.number(Key::kConfidence, {0.5, 0.999999}, rule.confidence);
-    numbers.number(Key::kMargin, kOpenUnit, rule.margin);
+    read_worse(numbers, rule);
     out.worse = rule;
     section.forbids();
   } else {

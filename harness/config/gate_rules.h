@@ -19,11 +19,24 @@ struct GateRules {
     std::string name;  // "settings" (all but words), an effect ("physics") or a section ("world")
     Demand demand = Demand::kForbidden;
   };
+  /// Rates that are worse.
+  struct Worse {
+    double confidence = 0.95;
+    double margin = 0.05;  // by less than this is no worse
+  };
+  /// Runs of both revisions of a scenario whose physics changed; their rates must not be worse.
+  struct Rerun {
+    std::int64_t runs = 100;  // of each trace, old and new
+    double seconds = 300.0;   // of the clock, for all scenarios of a gate together
+    std::int64_t seed = 1;
+    Worse worse;
+  };
   struct Models {
     bool lost_traces = false, gained_traces = false;  // forbidden
     bool declarations = false, axioms = false;        // forbidden to change
     std::vector<LocatedText> properties;              // that must not be lost
     std::vector<SettingRule> settings;
+    std::optional<Rerun> rerun;  // where the physics changed
   };
   struct Plans {
     bool forms = false, order = false;
@@ -34,11 +47,7 @@ struct GateRules {
   struct Runs {
     bool lost_traces = false, gained_discrepancies = false, worse_verdict = false;
     bool settings = false;
-  };
-  /// Rates that are worse.
-  struct Worse {
-    double confidence = 0.95;
-    double margin = 0.05;  // by less than this is no worse
+    std::optional<Rerun> rerun;  // where the physics of what both runs kept changed
   };
   struct Rates {
     std::optional<Worse> worse;

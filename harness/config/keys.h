@@ -221,6 +221,7 @@ struct Key {
   static constexpr std::string_view kReliefAmplitudeM = "relief_amplitude_m";
   static constexpr std::string_view kReliefWavelengthM = "relief_wavelength_m";
   static constexpr std::string_view kRequire = "require";
+  static constexpr std::string_view kRerun = "rerun";
   static constexpr std::string_view kResetTimeoutS = "reset_timeout_s";
   static constexpr std::string_view kRing = "ring";
   static constexpr std::string_view kRobot = "robot";
@@ -229,6 +230,8 @@ struct Key {
   static constexpr std::string_view kSampling = "sampling";
   static constexpr std::string_view kSays = "says";
   static constexpr std::string_view kScenario = "scenario";
+  static constexpr std::string_view kSeconds = "seconds";
+  static constexpr std::string_view kSeed = "seed";
   static constexpr std::string_view kSd = "sd";
   static constexpr std::string_view kSets = "sets";
   static constexpr std::string_view kSettable = "settable";

@@ -176,6 +176,11 @@ bool may_be_scenario(const YamlNode& root) {
 
 SuiteFileKind suite_file_kind(const std::filesystem::path& path, bool allow_outside) {
   base::SourceFiles files;
+  return suite_file_kind(path, allow_outside, files);
+}
+
+SuiteFileKind suite_file_kind(const std::filesystem::path& path, bool allow_outside,
+                              base::SourceFiles& files) {
   base::DiagnosticSink unread;
   base::PathGate gate(allow_outside);
   gate.admit_beside(path);

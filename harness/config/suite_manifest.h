@@ -52,6 +52,9 @@ enum class SuiteFileKind : std::uint8_t {
 /// Reads the file with all that it includes, so that it does not matter how a key is written.
 /// Nothing is reported.
 SuiteFileKind suite_file_kind(const std::filesystem::path& path, bool allow_outside);
+/// The same; `files`, which is new, has what was read.
+SuiteFileKind suite_file_kind(const std::filesystem::path& path, bool allow_outside,
+                              base::SourceFiles& files);
 
 /// Reads and checks a manifest; several errors per run, each at its key. `defaults` are laid under
 /// every case. Unknown keys, unsafe and repeated ids, missing models (kFileNotFound) and cases that

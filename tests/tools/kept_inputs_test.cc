@@ -203,8 +203,11 @@ TEST_CASE("two runs say which values changed between them") {
   CHECK_MESSAGE(has(refused.out, "not compared: q/inputs.json does not hold what the run read"),
                 refused.out);
   CHECK_FALSE(has(refused.out, "regions.cells.r2.x"));
-  CHECK(json_of(cli, {"diff", "r", "q"}, refused.code)["inputs"].is_null());
+  const auto why = json_of(cli, {"diff", "r", "q"}, refused.code);
+  CHECK(why["inputs"].is_null());
+  CHECK(why["inputs_refused"] == "q/inputs.json does not hold what the run read");
   CHECK(has(cli.parallax({"report", "r", "q", "-o", "two.html"}).err, "q/inputs.json does not"));
+  CHECK(has(cli.read("two.html"), "not compared: q/inputs.json does not hold what the run read"));
   CHECK_FALSE(has(cli.read("two.html"), "regions.cells.r2.x"));
   // So is a header's hash that is claimed for other texts.
   auto renamed = good;
@@ -213,6 +216,20 @@ TEST_CASE("two runs say which values changed between them") {
   CHECK(has(cli.parallax({"diff", "r", "q"}).out, "q/inputs.json does not hold"));
   fs::remove(cli.folder() / "q/inputs.json");
   CHECK(has(cli.parallax({"diff", "r", "q"}).out, "were not compared: q kept no texts"));
+}
+
+TEST_CASE("a run that was killed in its search has kept its texts") {
+  const CliFixture cli;
+  cli.write("searched.yaml", "include: scenario.yaml\nsearch: 5000\n");
+  const auto journal = cli.folder() / "k/journal.ndjson";
+  ProcessOptions options;
+  options.signal_when = [&] {
+    std::ifstream in(journal);
+    const auto lines = std::count(std::istreambuf_iterator<char>(in), {}, '\n');
+    return lines > 2 ? SIGKILL : 0;
+  };
+  REQUIRE(cli.parallax({"run", "searched.yaml", "--out", "k"}, options).code == 128 + SIGKILL);
+  CHECK(fs::exists(cli.folder() / "k/inputs.json"));
 }
 
 TEST_CASE("a run that was killed can be told of when its files have changed") {

@@ -11,6 +11,7 @@
 #include "compiler/base/words.h"
 #include "tools/cli/command.h"
 #include "tools/cli/diff_gate.h"
+#include "tools/cli/shared_options.h"
 #include "tools/diff/kept_difference.h"
 #include "tools/diff/model_difference.h"
 #include "tools/diff/rates_revision.h"
@@ -35,6 +36,8 @@ struct DiffOptions {
   bool no_traces = false;
   bool traces_only = false;
   std::vector<std::string> renamings;
+  CommandPermission commands;
+  std::int64_t jobs = 1;
 };
 
 std::string quoted(const std::string& text) { return base::json_text(Json(base::printable(text))); }
@@ -217,7 +220,7 @@ void add_kept(const DiffOptions& options, ComparedRevisions& out, Invocation& in
   const auto compared = compare_kept(options.old_path, options.new_path, invocation);
   const auto& kept = compared.difference;
   if (!kept) {
-    out.fields += ",\"inputs\":null";
+    out.fields += ",\"inputs\":null,\"inputs_refused\":" + quoted(compared.refused);
     std::error_code error;
     const bool folders = std::filesystem::is_directory(options.old_path, error) &&
                          std::filesystem::is_directory(options.new_path, error);
@@ -367,14 +370,21 @@ int run_diff(const DiffOptions& given, Invocation& invocation) {
     }
     options.models.renamings.push_back(*renaming);
   }
+  Rerunner rerunner(gate_simulator(options.commands.allow, invocation), options.jobs);
+  GateInput input;
+  input.models = options.models;
+  input.rerunner = &rerunner;
   if (names_revisions(options)) {
-    return run_revision_gate({options.old_path, options.new_path, options.tree}, options.models,
+    return run_revision_gate({options.old_path, options.new_path, options.tree}, input,
                              {options.gate, options.markdown}, invocation);
   }
   const auto old_kind = kind_of(options.old_path), new_kind = kind_of(options.new_path);
   const bool models = old_kind && new_kind && has_traces(*old_kind) && has_traces(*new_kind);
   if (!options.gate.empty() && old_kind && (models || old_kind == new_kind)) {
-    const GateInput input{options.old_path, options.new_path, *old_kind, *new_kind, options.models};
+    input.old_path = options.old_path;
+    input.new_path = options.new_path;
+    input.old_kind = *old_kind;
+    input.new_kind = *new_kind;
     return run_gate(input, {options.gate, options.markdown}, invocation);
   }
   if (models) return diff_models(options, *old_kind, *new_kind, invocation);
@@ -459,12 +469,19 @@ Command diff_command() {
               "With --gate: write what it says to this file, for a pull request")
       .needs("--gate")
       .file();
+  command
+      .option("-j,--jobs", options->jobs,
+              "With --gate: simulations at the same time, for rules that demand runs")
+      .needs("--gate")
+      .check(WholeNumber{1, 256})
+      .show_default();
   command.flag("--fallback", options->fallback,
                "With --textconv: print a file that has errors as it is");
   command.flag("--stat", options->stat, "Print numbers only");
   command.flag("--exit-code", options->exit_code,
                "Accepted for those who know it from git; the exit code always tells");
   add_model_diff_options(command, *options);
+  add_command_options(command, options->commands, false);
   return command_of(std::move(command), options, run_diff);
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
@@ -12,6 +13,7 @@
 #include "compiler/base/path_gate.h"
 #include "compiler/base/subprocess.h"
 #include "compiler/base/temporary_folder.h"
+#include "tools/app/simulator_factory.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/replaceable.h"
 #include "tools/diff/tree_gate.h"
@@ -106,16 +108,33 @@ int tell_gate(const Hold& hold, const GateFiles& files, Invocation& invocation) 
 
 }  // namespace
 
+SimulatorMaker gate_simulator(bool permitted, const Invocation& invocation) {
+  return [permitted, &invocation](
+             const ScenarioModel& loaded, Context& context,
+             const std::atomic<bool>& stop) -> base::Result<harness::SimulatorFactory> {
+    const auto& spec = loaded.scenario.simulator;
+    if (!spec.command.empty()) {
+      const auto text = base::command_text(spec.command);
+      if (!permitted) return context.sink().error(codes::kCommandNotPermitted, spec.source, text);
+      invocation.remark(
+          fmt::format("starting `{}`, as {} says", text, context.files().place(spec.source)));
+    }
+    std::vector<std::string> worker = {"/proc/self/exe", "worker"};
+    if (context.form().allow_outside) worker.emplace_back("--allow-outside");
+    return simulator_factory(loaded, worker, stop, {"/proc/self/exe", "supervise", "--"});
+  };
+}
+
 int run_gate(const GateInput& input, const GateFiles& files, Invocation& invocation) {
   const bool trees = is_tree(input.old_path) && is_tree(input.new_path);
   const auto hold = [&](const harness::GateRules& rules) {
     if (!trees) return hold_gate(input, rules, invocation);
-    return hold_tree_gate(input.old_path, input.new_path, rules, input.models, invocation);
+    return hold_tree_gate(input, rules, invocation);
   };
   return tell_gate(hold, files, invocation);
 }
 
-int run_revision_gate(const GateRevisions& revisions, const ModelDiffOptions& options,
+int run_revision_gate(const GateRevisions& revisions, const GateInput& input,
                       const GateFiles& files, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto refuse = [&](const std::string& subject, const char* why) {
@@ -155,11 +174,13 @@ int run_revision_gate(const GateRevisions& revisions, const ModelDiffOptions& op
     const auto current = (tree / here.lexically_relative(own_tree)).lexically_normal();
     return CommandFolder{tree, {is_inside ? current : here}, {own_tree}};
   };
-  auto own = options;
-  own.old_commands = commands_in(old_tree);
-  own.new_commands = commands_in(new_tree);
+  auto own = input;
+  own.old_path = old_place.string();
+  own.new_path = new_place.string();
+  own.models.old_commands = commands_in(old_tree);
+  own.models.new_commands = commands_in(new_tree);
   const auto hold = [&](const harness::GateRules& rules) {
-    auto report = hold_tree_gate(old_place.string(), new_place.string(), rules, own, invocation);
+    auto report = hold_tree_gate(own, rules, invocation);
     if (report) {
       report->old_name = revisions.before;
       report->new_name = revisions.after;

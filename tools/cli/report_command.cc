@@ -193,10 +193,9 @@ int report(const ReportOptions& options, Invocation& invocation) {
   std::vector<std::string> changes;
   for (std::size_t i = 1; i < pages.size(); ++i) {
     const auto kept = compare_kept(options.folders.front(), options.folders[i], invocation);
-    if (kept.is_altered) {
-      invocation.remark("the texts of the scenarios were not compared: " + kept.refused);
-    }
-    changes.push_back(kept.difference ? kept_text(*kept.difference, false) : std::string());
+    const auto refused = "the texts of the scenarios were not compared: " + kept.refused;
+    if (kept.is_altered) invocation.remark(refused);
+    changes.push_back(kept.difference ? kept_text(*kept.difference, false) : refused + '\n');
   }
   const auto text = pages.size() == 1 ? run_page(pages.front()) : comparison_page(pages, changes);
   const auto path = page_path(options);

@@ -222,8 +222,7 @@ class InputsKeeper {
   InputsKeeper(std::filesystem::path file, std::string text, Invocation& invocation)
       : file_(std::move(file)), text_(std::move(text)), invocation_(invocation) {}
 
-  /// Calls `keep` before the first simulation is waited for. Under a search, which reports no
-  /// progress, when the first simulation has been judged.
+  /// Calls `keep` before the first simulation is waited for.
   void watch(harness::CampaignOptions& campaign) {
     campaign.progress = [this, tell = std::move(campaign.progress)](const auto& progress) {
       keep();

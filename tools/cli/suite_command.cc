@@ -310,7 +310,8 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
   const auto* known = *ledger ? &**ledger : nullptr;
   std::vector<bool> skipped;
   for (const auto& one : collected->cases) skipped.push_back(!in_shard(one.id, *shard));
-  StoredResults stored{identity, options.rerun_failed ? earlier->cases : StoredCases{}};
+  StoredResults stored{identity, options.rerun_failed ? earlier->cases : StoredCases{},
+                       known_names(*earlier, identity)};
   SuiteRecord record(std::move(collected->cases), skipped, options.out, options.junit,
                      std::move(stored), *quarantine);
   record.note_unused_goldens(std::move(collected->unused_goldens));
@@ -342,7 +343,9 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
       invocation.remark("ledger: " + text);
     }
   }
-  append_to_history(record, identity, options, invocation);
+  const LastPasses told(folder, "told");
+  append_to_history(record, identity, options, invocation,
+                    {caches ? &told : nullptr, &loop.runner});
   return conclude(record, options, invocation);
 }
 

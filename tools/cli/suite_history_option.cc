@@ -6,8 +6,10 @@
 #include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
+#include "tools/cli/limits.h"
 #include "tools/history/change_points.h"
 #include "tools/history/git.h"
+#include "tools/suite/since_last_pass.h"
 #include "tools/suite/suite_history.h"
 
 namespace parallax::tools {
@@ -24,6 +26,35 @@ std::set<std::string> files_of(const SuiteRecord& record) {
   return out;
 }
 
+/// The suite's last line; null: there is none.
+const HistoryLine* last_line(const History& history, const HistoryLine& suite) {
+  for (auto at = history.lines.rbegin(); at != history.lines.rend(); ++at) {
+    if (at->is_same_suite(suite)) return &*at;
+  }
+  return nullptr;
+}
+
+/// Notes by value what changed in the files of cases since the suite's last line, as far as the
+/// texts of then were kept.
+void note_changes(const SuiteRecord& record, const std::string& file, const HistoryTexts& texts,
+                  HistoryLine& line) {
+  base::DiagnosticSink unread;
+  const auto history = read_history(file, unread);
+  const auto* last = history ? last_line(*history, line) : nullptr;
+  if (last == nullptr) return;
+  for (std::size_t i = 0; i < record.cases().size(); ++i) {
+    const auto& one = record.cases()[i];
+    const auto now = line.cases.find(one.name());
+    const auto then = last->cases.find(one.name());
+    if (now == line.cases.end() || then == last->cases.end()) continue;
+    if (now->second.files.empty() || now->second.files == then->second.files) continue;
+    const auto before = texts.told->find(one);
+    if (!before || before->files != then->second.files) continue;
+    now->second.changes =
+        changed_values(one, *before, record.results()[i], *texts.runner, stop_flag());
+  }
+}
+
 }  // namespace
 
 std::string unfit_for_history(const SuiteOptions& options) {
@@ -36,18 +67,28 @@ std::string unfit_for_history(const SuiteOptions& options) {
 }
 
 void append_to_history(const SuiteRecord& record, const SuiteIdentity& suite,
-                       const SuiteOptions& options, Invocation& invocation) {
+                       const SuiteOptions& options, Invocation& invocation,
+                       const HistoryTexts& texts) {
   if (options.history.empty()) return;
   if (record.count(Outcome::kNotFinished) > 0) {
     return invocation.remark("the suite was ended, so nothing is appended to " + options.history);
   }
   auto& sink = invocation.sink();
   std::error_code error;
-  auto revision = options.revision;
-  if (revision.empty() && !suite.paths.empty()) {
-    revision = revision_of(suite.paths.front(), files_of(record)).value_or("");
+  auto line = history_line(record, suite, options.revision);
+  if (line.revision.empty() && !suite.paths.empty()) {
+    line.revision = revision_of(suite.paths.front(), files_of(record)).value_or("");
+    const auto words = commit_words_at(suite.paths.front()).value_or(CommitWords{});
+    line.subject = words.subject;
+    line.date = words.date;
   }
-  if (!append_history(options.history, history_line(record, suite, revision), sink)) return;
+  if (texts.told != nullptr) note_changes(record, options.history, texts, line);
+  if (!append_history(options.history, line, sink)) return;
+  for (std::size_t i = 0; i < record.cases().size() && texts.told != nullptr; ++i) {
+    if (!record.cases()[i].is_removed) {
+      texts.told->keep_any(record.cases()[i], record.results()[i]);
+    }
+  }
   const auto history = read_history(options.history, sink);
   if (!history || history->lines.empty()) return;
   for (const auto& remark : remarks_on(*history, options.history)) invocation.remark(remark);

@@ -127,6 +127,7 @@ base::Result<GateReport> hold_gate(const GateInput& input, const harness::GateRu
   const auto done = [&](Rules found) -> base::Result<GateReport> {
     if (!found) return sink.already_reported();
     report.rules = *std::move(found);
+    judge_reruns(report.rules);
     return std::move(report);
   };
   if (has_traces(input.old_kind)) {
@@ -169,10 +170,12 @@ std::string gate_json(const GateReport& report) {
   nlohmann::ordered_json out = {{"passed", report.passes()},
                                 {"rules", nlohmann::ordered_json::array()}};
   for (const auto& rule : report.rules) {
-    out["rules"].push_back({{"rule", rule.rule},
-                            {"outcome", to_string(rule.outcome)},
-                            {"words", rule.words},
-                            {"witness", rule.witness}});
+    nlohmann::ordered_json json = {{"rule", rule.rule},
+                                   {"outcome", to_string(rule.outcome)},
+                                   {"words", rule.words},
+                                   {"witness", rule.witness}};
+    if (rule.rerun) json["rerun"] = base::parse_ordered_json(rerun_json(*rule.rerun));
+    out["rules"].push_back(std::move(json));
   }
   out["remarks"] = report.remarks;
   return base::json_text(out);

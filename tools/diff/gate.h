@@ -1,17 +1,19 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "harness/config/gate_rules.h"
 #include "tools/diff/model_difference.h"
+#include "tools/diff/rate_change.h"
 #include "tools/diff/rates_revision.h"
+#include "tools/diff/rerun.h"
 #include "tools/diff/revision.h"
 
 namespace parallax::tools {
 
-enum class RuleOutcome : std::uint8_t { kKept, kBroken, kUndecided };
 /// "kept", "broken", "not decidable"
 std::string_view to_string(RuleOutcome outcome);
 
@@ -21,6 +23,8 @@ struct RuleResult {
   RuleOutcome outcome = RuleOutcome::kKept;
   std::string words;         // one line
   std::string witness = {};  // lines; may be empty
+  /// The runs that a rule demanded, where something changed.
+  std::shared_ptr<const RerunEvidence> rerun = nullptr;
 };
 
 /// A discrepancy of a run folder that can be drawn.
@@ -46,6 +50,8 @@ struct GateInput {
   std::string old_path, new_path;
   RevisionKind old_kind = RevisionKind::kModel, new_kind = RevisionKind::kModel;
   ModelDiffOptions models;
+  Rerunner* rerunner = nullptr;  // null: nothing is run
+  std::size_t results = 1;       // of rates that are compared, and share the error
 };
 
 /// Checks the change from one revision to the other against the rules. Reports what loading them
@@ -59,6 +65,16 @@ base::Result<std::vector<RuleResult>> gate_models(const GateInput& input,
                                                   GateReport& report, Context& context);
 /// A rule about the settings of two scenarios.
 RuleResult setting_rule(const ModelDifference& found, const harness::GateRules::SettingRule& rule);
+/// `physics: rerun` of two scenarios: runs both where their physics changed.
+RuleResult rerun_rule(const ModelDifference& found, const GateInput& input,
+                      const harness::GateRules::Rerun& rule, Context& context);
+/// The same for the scenarios of two run folders, by the texts that the runs kept.
+RuleResult kept_rerun_rule(const std::string& old_folder, const std::string& new_folder,
+                           const GateInput& input, const harness::GateRules::Rerun& rule,
+                           Context& context);
+/// Judges the evidence of all rules that demand runs. They share the error, so that a gate is
+/// broken by chance with a probability of at most 1 - confidence.
+void judge_reruns(std::vector<RuleResult>& rules);
 base::Result<std::vector<RuleResult>> gate_runs(const GateInput& input,
                                                 const harness::GateRules::Runs& rules,
                                                 GateReport& report, Context& context);
@@ -66,12 +82,13 @@ base::Result<std::vector<RuleResult>> gate_rates(const GateInput& input,
                                                  const harness::GateRules::Rates& rules,
                                                  Context& context);
 /// The rules about rates, for results that were read. The probability that any of them is broken
-/// although nothing changed is at most 1 - confidence: rules, traces and causes share that error.
+/// although nothing changed is at most 1 - confidence: rules, traces and causes share that error,
+/// and so do `results` pairs of results.
 std::vector<RuleResult> hold_rates(const RatesRevision& before, const RatesRevision& after,
-                                   const harness::GateRules::Rates& rules);
+                                   const harness::GateRules::Rates& rules, std::size_t results = 1);
 
 std::string gate_text(const GateReport& report);
-/// {"passed": false, "rules": [{"rule", "outcome", "words", "witness"}], "remarks": [...]}
+/// {"passed": false, "rules": [{"rule", "outcome", "words", "witness", "rerun"}], "remarks": [...]}
 std::string gate_json(const GateReport& report);
 
 /// First line of a gate's Markdown, so that a newer one may take its place.

@@ -154,6 +154,7 @@ base::Result<std::vector<RuleResult>> gate_models(const GateInput& input,
   if (rules.declarations) out.push_back(fact_rule(facts, FactKind::kDeclaration, "declarations"));
   if (rules.axioms) out.push_back(fact_rule(facts, FactKind::kAxiom, "axioms"));
   for (const auto& rule : rules.settings) out.push_back(setting_rule(*found, rule));
+  if (rules.rerun) out.push_back(rerun_rule(*found, input, *rules.rerun, context));
   for (const auto& property : rules.properties) {
     auto rule = property_rule(input, property.text, context);
     if (!rule) return context.sink().already_reported();

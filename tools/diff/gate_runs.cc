@@ -164,6 +164,10 @@ base::Result<std::vector<RuleResult>> gate_runs(const GateInput& input,
   if (rules.gained_discrepancies) out.push_back(discrepancy_rule(before, after, report));
   if (rules.lost_traces) out.push_back(run_trace_rule(before, after));
   if (rules.worse_verdict) out.push_back(verdict_rule(before, after));
+  if (rules.rerun) {
+    out.push_back(kept_rerun_rule(folder_of(input.old_path), folder_of(input.new_path), input,
+                                  *rules.rerun, context));
+  }
   if (!rules.settings) return out;
   const auto old_facts = load_run_facts(input.old_path, context);
   const auto new_facts = load_run_facts(input.new_path, context);

@@ -7,7 +7,6 @@
 
 #include "compiler/artifact/path_map.h"
 #include "compiler/base/shown_text.h"
-#include "compiler/base/temporary_folder.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/replay.h"
 #include "tools/app/kept_inputs.h"
@@ -56,29 +55,33 @@ KeptSide kept_side(const std::string& folder, const std::filesystem::path& root,
 
 }  // namespace
 
-KeptComparison compare_kept(const std::string& old_folder, const std::string& new_folder,
-                            Context& context) {
-  const base::TemporaryFolder scratch("inputs");
-  if (scratch.path().empty()) return {std::nullopt, "there is no temporary folder", false};
-  const auto old_root = scratch.path() / "old", new_root = scratch.path() / "new";
-  const auto before = kept_side(old_folder, old_root, context);
-  const auto after = kept_side(new_folder, new_root, context);
-  for (const auto* side : {&before, &after}) {
-    if (side->is_altered) return {std::nullopt, side->refused, true};
+KeptPair::KeptPair(const std::string& old_folder, const std::string& new_folder,
+                   const Context& context) {
+  if (scratch_.path().empty()) {
+    refused_ = "there is no temporary folder";
+    return;
   }
+  const auto before = kept_side(old_folder, scratch_.path() / "old", context);
+  const auto after = kept_side(new_folder, scratch_.path() / "new", context);
   for (const auto* side : {&before, &after}) {
-    if (!side->refused.empty()) return {std::nullopt, side->refused, false};
+    if (refused_.empty() || (side->is_altered && !is_altered_)) refused_ = side->refused;
+    is_altered_ = is_altered_ || side->is_altered;
   }
+  before_ = before.scenario;
+  after_ = after.scenario;
+}
+
+std::optional<ModelDifference> KeptPair::compare(const Context& context) const {
   Context own({.allow_outside = context.form().allow_outside}, context.stop());
   ModelDiffOptions options;
   options.traces = false;
   options.find_renamings = true;
-  auto found = compare_models(before.scenario.string(), RevisionKind::kScenario,
-                              after.scenario.string(), RevisionKind::kScenario, options, own);
-  if (!found) return {std::nullopt, "they cannot be read any more", false};
+  auto found = compare_models(before_.string(), RevisionKind::kScenario, after_.string(),
+                              RevisionKind::kScenario, options, own);
+  if (!found) return std::nullopt;
   compiler::PathMap map{std::filesystem::path()};
-  map.add(old_root.string() + "=");
-  map.add(new_root.string() + "=");
+  map.add((scratch_.path() / "old").string() + "=");
+  map.add((scratch_.path() / "new").string() + "=");
   name_places(found->old_side, map);
   name_places(found->new_side, map);
   if (found->settings) {
@@ -87,7 +90,16 @@ KeptComparison compare_kept(const std::string& old_folder, const std::string& ne
       change.new_file = map.mapped(change.new_file);
     }
   }
-  return {*std::move(found), {}, false};
+  return *std::move(found);
+}
+
+KeptComparison compare_kept(const std::string& old_folder, const std::string& new_folder,
+                            Context& context) {
+  const KeptPair pair(old_folder, new_folder, context);
+  if (!pair.refused().empty()) return {std::nullopt, pair.refused(), pair.is_altered()};
+  auto found = pair.compare(context);
+  if (!found) return {std::nullopt, "they cannot be read any more", false};
+  return {std::move(found), {}, false};
 }
 
 std::string kept_text(const ModelDifference& found, bool stat) {

@@ -116,10 +116,15 @@ std::optional<RevisionRates> rates_of(const SortedJson& json, bool fixed) {
 base::Result<RatesRevision> load_rates(const std::string& path, Context& context) {
   const auto text = base::read_file(path, context.sink());
   if (!text) return context.sink().already_reported();
+  return parse_rates(path, *text, context);
+}
+
+base::Result<RatesRevision> parse_rates(const std::string& name, const std::string& text,
+                                        Context& context) {
   const auto refuse = [&](const std::string& why) {
-    return context.sink().error_about(codes::kNoRatesResult, path, why);
+    return context.sink().error_about(codes::kNoRatesResult, name, why);
   };
-  const auto json = base::parse_json(*text);
+  const auto json = base::parse_json(text);
   if (!json.is_object()) return refuse("it is no JSON object");
   const auto* traces = base::json_member(json, "traces");
   const auto complete = at<bool>(json, "complete");
@@ -129,7 +134,7 @@ base::Result<RatesRevision> load_rates(const std::string& path, Context& context
     return refuse("it lacks `status: ok`, `complete`, `compare` or `traces`");
   }
   RatesRevision out;
-  out.name = path;
+  out.name = name;
   out.scenario = at<std::string>(json, "scenario").value_or("");
   out.compare = *compared;
   out.seed = at<std::uint64_t>(json, "seed").value_or(0);

@@ -50,6 +50,9 @@ struct RatesRevision {
 
 /// Reports kNoRatesResult for a file without rates, or whose counts contradict each other.
 base::Result<RatesRevision> load_rates(const std::string& path, Context& context);
+/// The same for a text; `name`: as messages call it.
+base::Result<RatesRevision> parse_rates(const std::string& name, const std::string& text,
+                                        Context& context);
 
 /// "uniform of 6", "the first of 6", "only the first" where nothing says of how many.
 std::string initial_text(const RevisionInitial& initial);

@@ -183,15 +183,21 @@ bool has_traces(RevisionKind kind) {
          kind == RevisionKind::kScenario;
 }
 
+std::vector<std::string> command_of(std::vector<std::string> command, const CommandFolder& side) {
+  for (std::size_t i = 0; i < command.size(); ++i) {
+    // A program without a slash is looked up in PATH.
+    const bool is_file_name = i > 0 || command[i].find('/') != std::string::npos;
+    if (!is_file_name) continue;
+    auto file = word_of_side(command[i], side);
+    // One that only another side has is missing here.
+    if (is_file(file) || is_file(command[i])) command[i] = std::move(file);
+  }
+  return command;
+}
+
 std::string hash_of_command(const std::vector<std::string>& command,
                             const std::optional<CommandFolder>& side) {
-  if (!side) return harness::hash_of_command(command);
-  auto words = command;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    // A program without a slash is looked up in PATH.
-    if (i > 0 || words[i].find('/') != std::string::npos) words[i] = word_of_side(words[i], *side);
-  }
-  return harness::hash_of_command(words);
+  return harness::hash_of_command(side ? command_of(command, *side) : command);
 }
 
 base::Result<ModelRevision> load_model_revision(const std::string& path, RevisionKind kind,

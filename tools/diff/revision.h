@@ -51,6 +51,9 @@ struct CommandFolder {
   std::vector<std::filesystem::path> others;
 };
 
+/// The command with its files as the side has them.
+std::vector<std::string> command_of(std::vector<std::string> command, const CommandFolder& side);
+
 /// SHA-256 over the contents of the files that the command names, as the side has them; without a
 /// side, as they would be started here.
 std::string hash_of_command(const std::vector<std::string>& command,

@@ -1,9 +1,10 @@
 // A gate over two folders.
 //
 // Each scenario, each model of a manifest, and each that nothing reads, is read as far as needed to
-// know which files belong to it, wherever these lie. Only where one of them differs between the two
-// folders are the two revisions compiled and compared. Cost: reading what belongs to scenarios and
-// models, and one comparison for each that changed.
+// know which files belong to it, wherever these lie. That is done in the old folder; in the new one
+// only where one of these files differs, as equal texts name equal files. Only there are the two
+// revisions compiled and compared. Cost: reading what belongs to the old scenarios and models, and
+// one comparison for each that changed.
 
 #include "tools/diff/tree_gate.h"
 
@@ -36,11 +37,51 @@ bool is_run_folder(const fs::path& folder) {
   return lies_there(folder / "journal.ndjson") || lies_there(folder / "report.json");
 }
 
+/// Whether files of both folders are the same, each compared once, links followed. A file that only
+/// one side has, or that cannot be read, is not.
+class SameFiles {
+ public:
+  SameFiles(fs::path before, fs::path after)
+      : before_(std::move(before)), after_(std::move(after)) {}
+
+  bool all(const std::set<std::string>& names) {
+    return std::all_of(names.begin(), names.end(), [&](const auto& name) { return one(name); });
+  }
+
+ private:
+  bool one(const std::string& name) {
+    const auto known = known_.find(name);
+    if (known != known_.end()) return known->second;
+    return known_[name] = same(before_ / name, after_ / name);
+  }
+
+  static bool same(const fs::path& a, const fs::path& b) {
+    std::error_code error;
+    const auto kind = fs::status(a, error).type();
+    if (kind != fs::status(b, error).type()) return false;
+    // The files that count in a named folder are inputs themselves.
+    if (kind == fs::file_type::not_found || kind == fs::file_type::directory) return true;
+    base::DiagnosticSink unread;
+    const auto x = base::read_file(a, unread), y = base::read_file(b, unread);
+    return x && y && *x == *y;
+  }
+
+  fs::path before_, after_;
+  std::map<std::string, bool> known_;
+};
+
 /// One folder: its files, and what of them is compared. Names are relative to it.
 class Tree {
  public:
-  Tree(const std::string& folder, LoadRevision options, Context& context)
-      : folder_(base::absolute_name(folder)), options_(std::move(options)), context_(context) {
+  /// `twin`: the other folder. What was read there and is the same here is not read again.
+  Tree(const std::string& folder, LoadRevision options, const harness::GateRules& rules,
+       SameFiles& same, const Tree* twin, Context& context)
+      : folder_(base::absolute_name(folder)),
+        options_(std::move(options)),
+        rules_(rules),
+        same_(same),
+        twin_(twin),
+        context_(context) {
     std::error_code error;
     fs::recursive_directory_iterator at(folder_, error), end;
     for (; !error && at != end; at.increment(error)) {
@@ -54,7 +95,7 @@ class Tree {
     }
     if (error) broken_.insert(".");
     for (const auto& name : files_) note_subjects(name);
-    note_models_of_no_one();
+    if (rules_.models) note_models_of_no_one();
   }
 
   const std::map<std::string, RevisionKind>& subjects() const { return subjects_; }
@@ -73,12 +114,27 @@ class Tree {
 
   /// The files that belong to a scenario or model.
   struct Inputs {
-    std::set<std::string> names;  // also of files that were looked for in vain
-    std::string command_hash;     // over the files that a simulator's command names
-    std::string foreign;          // a file that is read from the other side instead of this one
-    bool is_read = true;          // false: there may be more
+    std::set<std::string> names;       // also of files that were looked for in vain
+    std::vector<std::string> command;  // of a simulator
+    std::string command_hash;          // over the files that it names
+    std::string foreign;               // a file that is read from the other side instead of this
+    bool is_read = true;               // false: there may be more
   };
-  Inputs inputs_of(const std::string& name) const {
+  const Inputs& inputs_of(const std::string& name) const {
+    const auto known = inputs_.find(name);
+    if (known != inputs_.end()) return known->second;
+    return inputs_.emplace(name, read_inputs(name)).first->second;
+  }
+
+ private:
+  Inputs read_inputs(const std::string& name) const {
+    if (twin_ != nullptr && twin_->kind_at(name) == kind_at(name)) {
+      auto out = twin_->inputs_of(name);
+      if (out.is_read && out.foreign.empty() && same_.all(out.names)) {
+        out.command_hash = hash_of_command(out.command, options_.commands);
+        return out;
+      }
+    }
     base::SourceFiles files;
     base::DiagnosticSink unread;  // who compares it reports
     const auto path = path_of(name);
@@ -91,7 +147,8 @@ class Tree {
       if (scenario) {
         read_models(scenario->models, path, files, unread);
         read_models(scenario->simulator.models, path, files, unread);
-        out.command_hash = hash_of_command(scenario->simulator.command, options_.commands);
+        out.command = scenario->simulator.command;
+        out.command_hash = hash_of_command(out.command, options_.commands);
       }
     } else if (kind == RevisionKind::kModel) {
       read_models({{path.string(), {}}}, path, files, unread);
@@ -106,7 +163,6 @@ class Tree {
     return out;
   }
 
- private:
   void read_models(const std::vector<harness::LocatedText>& models, const fs::path& named_by,
                    base::SourceFiles& files, base::DiagnosticSink& sink) const {
     std::vector<fs::path> paths;
@@ -136,31 +192,60 @@ class Tree {
 
   void note_subjects(const std::string& name) {
     const auto ending = fs::path(name).extension();
-    if (ending != ".yaml" && ending != ".yml") return;
-    const bool allow_outside = context_.form().allow_outside;
-    const auto kind = harness::suite_file_kind(path_of(name), allow_outside);
-    if (kind == harness::SuiteFileKind::kScenario) {
+    if (rules_.rates && ending == ".json") note_rates(name);
+    if (!rules_.models || (ending != ".yaml" && ending != ".yml")) return;
+    auto role = role_of(name);
+    if (role.kind == harness::SuiteFileKind::kScenario) {
       subjects_.emplace(name, RevisionKind::kScenario);
-    } else if (kind == harness::SuiteFileKind::kBroken) {
+    } else if (role.kind == harness::SuiteFileKind::kBroken) {
       broken_.insert(name);
-    } else if (kind == harness::SuiteFileKind::kManifest) {
-      base::SourceFiles files;
+    }
+    for (const auto& model : role.models) note_model(model);
+    roles_.emplace(name, std::move(role));
+  }
+
+  void note_rates(const std::string& name) {
+    Context own(context_.form(), context_.stop());
+    if (load_rates(path_of(name).string(), own)) subjects_.emplace(name, RevisionKind::kRates);
+  }
+
+  /// What a YAML file is; a manifest that cannot be read is broken.
+  struct Role {
+    harness::SuiteFileKind kind = harness::SuiteFileKind::kOther;
+    std::vector<std::string> models;  // of a manifest, by name
+    std::set<std::string> names;      // of the files that say so
+  };
+  Role role_of(const std::string& name) const {
+    if (twin_ != nullptr) {
+      const auto other = twin_->roles_.find(name);
+      if (other != twin_->roles_.end() && same_.all(other->second.names)) return other->second;
+    }
+    const bool allow_outside = context_.form().allow_outside;
+    base::SourceFiles files;
+    Role out{harness::suite_file_kind(path_of(name), allow_outside, files), {}, {name}};
+    if (out.kind == harness::SuiteFileKind::kManifest) {
       base::DiagnosticSink unread;
       const auto manifest = harness::load_manifest(path_of(name), files, unread, allow_outside);
-      if (!manifest) {
-        broken_.insert(name);
-        return;
-      }
-      for (const auto& one : manifest->cases) {
-        for (const auto& model : one.models) note_model(base::absolute_name(model.text));
+      if (!manifest) out.kind = harness::SuiteFileKind::kBroken;
+      if (manifest) {
+        for (const auto& one : manifest->cases) {
+          for (const auto& model : one.models) {
+            out.models.push_back(name_of(base::absolute_name(model.text)));
+          }
+        }
       }
     }
+    for (const auto& input : files.inputs()) out.names.insert(name_of(base::absolute_name(input)));
+    return out;
   }
 
   /// Models that neither a scenario nor a manifest nor another model reads.
   void note_models_of_no_one() {
     std::set<std::string> read, unread;
-    for (const auto& [name, kind] : subjects_) read.merge(inputs_of(name).names);
+    for (const auto& [name, kind] : subjects_) {
+      const auto& names = inputs_of(name).names;
+      read.insert(names.begin(), names.end());
+    }
     for (const auto& name : files_) {
       if (fs::path(name).extension() == ".e" && !read.contains(name)) unread.insert(name);
     }
@@ -176,61 +261,37 @@ class Tree {
     }
   }
 
-  void note_model(const std::string& path) {
-    const auto kind = kind_of(path);
-    const auto name = name_of(path);
-    if (kind && has_traces(*kind) && lies_there(path)) subjects_.emplace(name, *kind);
+  void note_model(const std::string& name) {
+    const auto kind = kind_of(name);
+    if (kind && has_traces(*kind) && lies_there(path_of(name))) subjects_.emplace(name, *kind);
   }
 
   fs::path folder_;
   LoadRevision options_;
+  const harness::GateRules& rules_;
+  SameFiles& same_;
+  const Tree* twin_;
   Context& context_;
   std::set<std::string> files_, broken_;
   std::map<std::string, RevisionKind> subjects_;
-};
-
-/// Whether files of both folders are the same, each compared once, links followed. A file that only
-/// one side has, or that cannot be read, is not.
-class Unchanged {
- public:
-  Unchanged(const Tree& before, const Tree& after) : before_(before), after_(after) {}
-
-  bool all(const std::set<std::string>& names) {
-    return std::all_of(names.begin(), names.end(), [&](const auto& name) { return one(name); });
-  }
-
- private:
-  bool one(const std::string& name) {
-    const auto known = known_.find(name);
-    if (known != known_.end()) return known->second;
-    return known_[name] = same(before_.path_of(name), after_.path_of(name));
-  }
-
-  static bool same(const fs::path& a, const fs::path& b) {
-    std::error_code error;
-    const auto kind = fs::status(a, error).type();
-    if (kind != fs::status(b, error).type()) return false;
-    // The files that count in a named folder are inputs themselves.
-    if (kind == fs::file_type::not_found || kind == fs::file_type::directory) return true;
-    base::DiagnosticSink unread;
-    const auto x = base::read_file(a, unread), y = base::read_file(b, unread);
-    return x && y && *x == *y;
-  }
-
-  const Tree& before_;
-  const Tree& after_;
-  std::map<std::string, bool> known_;
+  std::map<std::string, Role> roles_;  // of YAML files
+  mutable std::map<std::string, Inputs> inputs_;
 };
 
 /// Compares what is at one place of both folders.
 std::vector<RuleResult> rules_at(const std::string& name, const Tree& before, const Tree& after,
-                                 const harness::GateRules& rules, const ModelDiffOptions& options,
+                                 const harness::GateRules& rules, const GateInput& folders,
                                  GateReport& all, Context& context) {
   Context own(context.form(), context.stop());
-  const GateInput input{before.path_of(name).string(), after.path_of(name).string(),
-                        *before.kind_at(name), *after.kind_at(name), options};
+  auto input = folders;
+  input.old_path = before.path_of(name).string();
+  input.new_path = after.path_of(name).string();
+  input.old_kind = *before.kind_at(name);
+  input.new_kind = *after.kind_at(name);
   std::vector<RuleResult> out;
-  if (!has_traces(input.old_kind) || !has_traces(input.new_kind)) {
+  const bool are_rates =
+      input.old_kind == RevisionKind::kRates && input.new_kind == RevisionKind::kRates;
+  if (!are_rates && (!has_traces(input.old_kind) || !has_traces(input.new_kind))) {
     out.push_back({name, RuleOutcome::kUndecided, "it is no model on both sides"});
     return out;
   }
@@ -243,7 +304,8 @@ std::vector<RuleResult> rules_at(const std::string& name, const Tree& before, co
     return out;
   }
   for (auto& rule : report->rules) {
-    if (rule.outcome == RuleOutcome::kKept) continue;
+    // Evidence is shown in any case.
+    if (rule.outcome == RuleOutcome::kKept && !rule.rerun && !are_rates) continue;
     rule.rule = fmt::format("{}: {}", name, rule.rule);
     out.push_back(std::move(rule));
   }
@@ -254,6 +316,16 @@ std::vector<RuleResult> rules_at(const std::string& name, const Tree& before, co
                                report->rules.size() == 1
                                    ? "the rule is"
                                    : fmt::format("all {} rules are", report->rules.size()))});
+  }
+  return out;
+}
+
+/// Results of rates that both folders have and that differ: they share the error of a gate.
+std::size_t count_changed_rates(const Tree& before, const Tree& after, SameFiles& same) {
+  std::size_t out = 0;
+  for (const auto& [name, kind] : before.subjects()) {
+    const bool is_pair = kind == RevisionKind::kRates && after.kind_at(name) == kind;
+    out += is_pair && !same.all({name}) ? 1 : 0;
   }
   return out;
 }
@@ -286,22 +358,24 @@ bool is_tree(const std::string& path) {
   return fs::is_directory(path, error) && !is_run_folder(path);
 }
 
-base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
-                                        const std::string& new_folder,
-                                        const harness::GateRules& rules,
-                                        const ModelDiffOptions& given, Context& context) {
-  if (!rules.models) {
+base::Result<GateReport> hold_tree_gate(const GateInput& folders, const harness::GateRules& rules,
+                                        Context& context) {
+  if (!rules.models && !rules.rates) {
     return context.sink().error(codes::kNoGateRules, rules.source, "models");
   }
-  auto options = given;
+  const auto &old_folder = folders.old_path, &new_folder = folders.new_path;
+  auto input = folders;
+  auto& options = input.models;
   if (!options.old_commands || !options.new_commands) {
     add_command_folders(base::real_path(old_folder), base::real_path(new_folder), options);
   }
   auto old_load = options.load, new_load = options.load;
   old_load.commands = options.old_commands;
   new_load.commands = options.new_commands;
-  const Tree before(old_folder, old_load, context), after(new_folder, new_load, context);
-  Unchanged unchanged(before, after);
+  SameFiles same(base::absolute_name(old_folder), base::absolute_name(new_folder));
+  const Tree before(old_folder, old_load, rules, same, nullptr, context);
+  const Tree after(new_folder, new_load, rules, same, &before, context);
+  input.results = count_changed_rates(before, after, same);
   GateReport out;
   out.kind = "tree";
   out.old_name = old_folder;
@@ -321,8 +395,10 @@ base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
                                           : "it cannot be read on the new side"});
   }
   if (subjects.empty() && broken.empty()) {
-    out.rules.push_back({"models", RuleOutcome::kUndecided,
-                         "neither folder has a scenario or a model: nothing can be compared"});
+    out.rules.push_back(
+        {rules.models ? "models" : "rates", RuleOutcome::kUndecided,
+         fmt::format("neither folder has {}: nothing can be compared",
+                     rules.models ? "a scenario or a model" : "a result of `rates --json`")});
   }
   for (const auto& name : subjects) {
     if (broken.contains(name)) continue;
@@ -331,7 +407,7 @@ base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
           {name, RuleOutcome::kUndecided, "it is gone: nothing is left to compare"});
       continue;
     }
-    const auto new_inputs = after.inputs_of(name);
+    const auto& new_inputs = after.inputs_of(name);
     if (!before.kind_at(name)) {
       added.insert(name);
       if (!new_inputs.is_read) {
@@ -339,7 +415,7 @@ base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
       }
       continue;
     }
-    const auto old_inputs = before.inputs_of(name);
+    const auto& old_inputs = before.inputs_of(name);
     if (!old_inputs.foreign.empty() || !new_inputs.foreign.empty()) {
       out.rules.push_back(
           {name, RuleOutcome::kUndecided,
@@ -349,14 +425,15 @@ base::Result<GateReport> hold_tree_gate(const std::string& old_folder,
       continue;
     }
     if (old_inputs.is_read && new_inputs.is_read &&
-        old_inputs.command_hash == new_inputs.command_hash && unchanged.all(old_inputs.names) &&
-        unchanged.all(new_inputs.names)) {
-      ++untouched;
+        old_inputs.command_hash == new_inputs.command_hash && same.all(old_inputs.names) &&
+        same.all(new_inputs.names)) {
+      untouched += before.kind_at(name) == RevisionKind::kRates ? 0 : 1;
       continue;
     }
-    auto found = rules_at(name, before, after, rules, options, out, context);
+    auto found = rules_at(name, before, after, rules, input, out, context);
     std::move(found.begin(), found.end(), std::back_inserter(out.rules));
   }
+  judge_reruns(out.rules);
   for (const auto& name : added) out.remarks.push_back(name + " is new");
   if (untouched > 0) {
     out.remarks.push_back(

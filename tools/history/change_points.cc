@@ -33,11 +33,26 @@ bool says_something(const HistoryCase& one) {
   return one.outcome != "not finished" && one.outcome != "skipped";
 }
 
-/// Names other changes between the two results.
+/// "world.bodies.box.mass_kg 0.3 -> 3; criterion.runs 90 -> 40; and 3 more"
+std::string value_words(const std::vector<std::string>& changes) {
+  constexpr std::size_t kShown = 5;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(changes.size(), kShown); ++i) {
+    out += (i > 0 ? "; " : "") + changes[i];
+  }
+  return changes.size() <= kShown ? out
+                                  : out + fmt::format("; and {} more", changes.size() - kShown);
+}
+
+/// Names other changes between the two results. `changes`: of the files, by value, where known.
 std::string reason_words(const HistoryLine& old_line, const HistoryCase& before,
-                         const HistoryLine& new_line, const HistoryCase& after) {
+                         const HistoryLine& new_line, const HistoryCase& after,
+                         const std::vector<std::string>& changes) {
   if (before.files.empty() || after.files.empty()) return {};
-  if (before.files != after.files) return "; files that it reads changed";
+  if (before.files != after.files) {
+    return changes.empty() ? "; files that it reads changed"
+                           : "; files that it reads changed: " + value_words(changes);
+  }
   const bool program = old_line.program != new_line.program;
   const bool seed = old_line.seed != new_line.seed;
   return fmt::format("; its files are the same{}{}", program ? ", the program is another one" : "",
@@ -65,20 +80,6 @@ const MeasuredRate* find_rate(const HistoryCase& one, const std::string& of) {
   return at == one.rates.end() ? nullptr : &*at;
 }
 
-/// A cause that was not seen has count 0 in all runs of its trace.
-std::optional<MeasuredRate> rate_or_none(const HistoryCase& one, const std::string& of) {
-  if (const auto* rate = find_rate(one, of)) return *rate;
-  const auto any = of.substr(0, of.find(": ")) + ": any discrepancy";
-  const auto* runs = find_rate(one, any);
-  if (runs == nullptr) return std::nullopt;
-  auto out = *runs;
-  out.of = of;
-  out.count = 0;
-  out.lower = 0.0;
-  out.upper = harness::clopper_pearson_upper(0, runs->runs, 0.5 * (1.0 + runs->confidence));
-  return out;
-}
-
 /// One case through the lines of its suite.
 class CaseHistory {
  public:
@@ -98,10 +99,15 @@ class CaseHistory {
       }
       if (now == nullptr || !says_something(*now)) continue;
       if (last && standing_of(*at(*last)) != standing_of(*now)) {
-        out.push_back({ChangePoint::Kind::kOutcome, i, name_,
-                       fmt::format("{}, then {}{}", standing_of(*at(*last)), standing_of(*now),
-                                   reason_words(line(*last), *at(*last), line(i), *now)),
-                       0.0});
+        out.push_back(
+            {ChangePoint::Kind::kOutcome, i, name_,
+             fmt::format("{}, then {}{}", standing_of(*at(*last)), standing_of(*now),
+                         reason_words(line(*last), *at(*last), line(i), *now, between(*last, i))),
+             0.0});
+      } else if (last && !now->changes.empty()) {
+        out.push_back(
+            {ChangePoint::Kind::kValues, i, name_,
+             fmt::format("{} as before; {}", standing_of(*now), value_words(now->changes)), 0.0});
       }
       last = i;
     }
@@ -121,7 +127,7 @@ class CaseHistory {
   std::vector<std::size_t> measured(const std::string& of) const {
     std::vector<std::size_t> out;
     for (std::size_t i = 0; i < suite_.size(); ++i) {
-      const auto rate = at(i) == nullptr ? std::nullopt : rate_or_none(*at(i), of);
+      const auto rate = at(i) == nullptr ? std::nullopt : measured_rate(*at(i), of);
       if (rate && rate->fixed) out.push_back(i);
     }
     return out;
@@ -148,12 +154,13 @@ class CaseHistory {
         reference = i;
         continue;
       }
-      const auto before = *rate_or_none(*at(*reference), of), now = *rate_or_none(*at(i), of);
+      const auto before = *measured_rate(*at(*reference), of), now = *measured_rate(*at(i), of);
       const double p = std::min(1.0, factors[i] * two_sided(before, now));
       if (p > 1.0 - confidence) continue;
       out.push_back({ChangePoint::Kind::kRate, i, name_,
                      fmt::format("{}: {}, then {}{}", of, rate_words(before), rate_words(now),
-                                 reason_words(line(*reference), *at(*reference), line(i), *at(i))),
+                                 reason_words(line(*reference), *at(*reference), line(i), *at(i),
+                                              between(*reference, i))),
                      p});
       reference = i;
     }
@@ -161,6 +168,17 @@ class CaseHistory {
 
  private:
   const HistoryLine& line(std::size_t i) const { return history_.lines[suite_[i]]; }
+  /// The changes by value of the lines behind `first`, up to `last`.
+  std::vector<std::string> between(std::size_t first, std::size_t last) const {
+    std::vector<std::string> out;
+    for (auto i = first + 1; i <= last; ++i) {
+      if (at(i) == nullptr) continue;
+      for (const auto& change : at(i)->changes) {
+        if (std::find(out.begin(), out.end(), change) == out.end()) out.push_back(change);
+      }
+    }
+    return out;
+  }
   const HistoryCase* at(std::size_t i) const {
     const auto found = line(i).cases.find(name_);
     return found == line(i).cases.end() ? nullptr : &found->second;
@@ -182,6 +200,19 @@ std::vector<std::string> case_names(const History& history, const std::vector<st
 }
 
 }  // namespace
+
+std::optional<MeasuredRate> measured_rate(const HistoryCase& one, const std::string& of) {
+  if (const auto* rate = find_rate(one, of)) return *rate;
+  const auto any = of.substr(0, of.find(": ")) + ": any discrepancy";
+  const auto* runs = find_rate(one, any);
+  if (runs == nullptr) return std::nullopt;
+  auto out = *runs;
+  out.of = of;
+  out.count = 0;
+  out.lower = 0.0;
+  out.upper = harness::clopper_pearson_upper(0, runs->runs, 0.5 * (1.0 + runs->confidence));
+  return out;
+}
 
 Changes find_changes(const History& history, const std::vector<std::size_t>& suite,
                      double confidence) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct ChangePoint {
     kOutcome,  // outcome or verdict of a case
     kRate,     // more or fewer failures than chance explains
     kCases,    // a case came, or left
+    kValues,   // what a case reads changed by these values, and its outcome did not
   };
   Kind kind = Kind::kOutcome;
   std::size_t line = 0;  // index into the suite's lines: the first with what is new
@@ -40,6 +42,10 @@ struct Changes {
 /// stays named. Lost runs count as the less remarkable answer.
 Changes find_changes(const History& history, const std::vector<std::size_t>& suite,
                      double confidence);
+
+/// A rate of a case. A cause that was not seen has count 0 in all runs of its trace; none: the
+/// trace was not measured.
+std::optional<MeasuredRate> measured_rate(const HistoryCase& one, const std::string& of);
 
 /// Remarks about times, which depend on the machine: cases that took more than three times as long
 /// as in the line before, and more than a second longer.

@@ -46,11 +46,25 @@ std::optional<std::string> ask_git(const std::string& folder,
   return std::move(answer.out);
 }
 
-std::optional<std::string> revision_at(const std::string& path) {
+namespace {
+
+std::string folder_at(const std::string& path) {
   std::error_code error;
-  auto folder = base::real_path(path);
-  if (!std::filesystem::is_directory(folder, error)) folder = folder.parent_path();
-  return ask_git(folder.string(), {"rev-parse", "--verify", "--quiet", "--short=12", "HEAD"});
+  const auto place = base::real_path(path);
+  return (std::filesystem::is_directory(place, error) ? place : place.parent_path()).string();
+}
+
+}  // namespace
+
+std::optional<std::string> revision_at(const std::string& path) {
+  return ask_git(folder_at(path), {"rev-parse", "--verify", "--quiet", "--short=12", "HEAD"});
+}
+
+std::optional<CommitWords> commit_words_at(const std::string& path) {
+  const auto words = ask_git(folder_at(path), {"log", "-1", "--format=%cs%n%s", "HEAD"});
+  if (!words) return std::nullopt;
+  const auto end = std::min(words->find('\n'), words->size());
+  return CommitWords{words->substr(std::min(end + 1, words->size())), words->substr(0, end)};
 }
 
 namespace {
@@ -110,10 +124,7 @@ std::optional<std::string> revision_of(const std::string& path,
                                        const std::set<std::string>& files) {
   auto revision = revision_at(path);
   if (!revision) return std::nullopt;
-  std::error_code error;
-  auto folder = base::real_path(path);
-  if (!std::filesystem::is_directory(folder, error)) folder = folder.parent_path();
-  const auto top = ask_git(folder.string(), {"rev-parse", "--show-toplevel"});
+  const auto top = ask_git(folder_at(path), {"rev-parse", "--show-toplevel"});
   const auto changes = top ? has_changes(*top, files) : std::nullopt;
   if (!changes) return *revision + "+unknown";
   return *changes ? *revision + "+changes" : *revision;

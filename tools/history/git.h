@@ -23,9 +23,16 @@ std::optional<std::string> ask_git(const std::string& folder,
 /// repository, or there is no commit.
 std::optional<std::string> revision_at(const std::string& path);
 
-/// The same, followed by `+changes` where one of these files, as far as they lie in that checkout,
-/// differs from the commit, and by `+unknown` where git does not tell. The repository's own filters
-/// do not run: a file that needs one counts as changed once it was touched.
+/// Subject and date of a commit.
+struct CommitWords {
+  std::string subject, date;  // "2026-03-01"
+};
+/// Those of the commit that is checked out where a file or folder lies.
+std::optional<CommitWords> commit_words_at(const std::string& path);
+
+/// revision_at(), followed by `+changes` where one of these files, as far as they lie in that
+/// checkout, differs from the commit, and by `+unknown` where git does not tell. The repository's
+/// own filters do not run: a file that needs one counts as changed once it was touched.
 std::optional<std::string> revision_of(const std::string& path, const std::set<std::string>& files);
 
 }  // namespace parallax::tools

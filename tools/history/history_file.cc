@@ -67,6 +67,15 @@ std::vector<MeasuredRate> rates_of(const Json& list) {
   return out;
 }
 
+std::vector<std::string> texts_of(const Json& list) {
+  constexpr std::size_t kMostTexts = 1000;
+  std::vector<std::string> out;
+  for (const auto& one : list.is_array() ? list : Json::array()) {
+    if (one.is_string() && out.size() < kMostTexts) out.push_back(one.get<std::string>());
+  }
+  return out;
+}
+
 double wall_of(const Json& object) {
   double wall_s = 0.0;
   if (const auto* timing = base::json_member(object, "timing")) take(*timing, "wall_s", wall_s);
@@ -79,6 +88,7 @@ HistoryCase case_of(const Json& object) {
   take(object, "verdict", out.verdict);
   take(object, "files", out.files);
   take(object, "flaky", out.flaky);
+  if (const auto* changes = base::json_member(object, "changes")) out.changes = texts_of(*changes);
   out.wall_s = wall_of(object);
   if (const auto* rates = base::json_member(object, "rates")) out.rates = rates_of(*rates);
   return out;
@@ -92,16 +102,15 @@ std::optional<HistoryLine> decode(std::string_view text) {
   if (format != kFormat || cases == nullptr || !cases->is_object()) return std::nullopt;
   HistoryLine out;
   take(object, "revision", out.revision);
+  take(object, "subject", out.subject);
+  take(object, "date", out.date);
   take(object, "only", out.only);
   take(object, "fast", out.fast);
   take(object, "seed", out.seed);
   take(object, "tool_version", out.version);
   take(object, "program", out.program);
   out.wall_s = wall_of(object);
-  const auto* paths = base::json_member(object, "paths");
-  for (const auto& one : paths != nullptr && paths->is_array() ? *paths : Json::array()) {
-    if (one.is_string()) out.paths.push_back(one.get<std::string>());
-  }
+  if (const auto* paths = base::json_member(object, "paths")) out.paths = texts_of(*paths);
   for (const auto& [name, value] : cases->items()) out.cases.emplace(name, case_of(value));
   return out;
 }
@@ -151,14 +160,15 @@ std::vector<MeasuredRate> decode_rates(std::string_view text) {
 }
 
 std::string encode(const HistoryLine& line) {
-  ordered_json out = {{"history", kFormat},
-                      {"revision", line.revision},
-                      {"paths", line.paths},
-                      {"only", line.only},
-                      {"fast", line.fast},
-                      {"seed", line.seed},
-                      {"tool_version", line.version},
-                      {"program", line.program}};
+  ordered_json out = {{"history", kFormat}, {"revision", line.revision}};
+  if (!line.subject.empty()) out["subject"] = line.subject;
+  if (!line.date.empty()) out["date"] = line.date;
+  out.update({{"paths", line.paths},
+              {"only", line.only},
+              {"fast", line.fast},
+              {"seed", line.seed},
+              {"tool_version", line.version},
+              {"program", line.program}});
   auto cases = ordered_json::object();
   for (const auto& [name, one] : line.cases) {
     auto& item = cases[name];
@@ -166,6 +176,7 @@ std::string encode(const HistoryLine& line) {
     if (!one.verdict.empty()) item["verdict"] = one.verdict;
     for (const auto& rate : one.rates) item["rates"].push_back(rate_json(rate));
     if (!one.files.empty()) item["files"] = one.files;
+    if (!one.changes.empty()) item["changes"] = one.changes;
     if (one.flaky) item["flaky"] = true;
     item["timing"] = {{"wall_s", one.wall_s}};
   }

@@ -29,11 +29,14 @@ struct HistoryCase {
   std::string files;  // a hash of all that the case read; empty: not known
   bool flaky = false;
   double wall_s = 0.0;
+  /// What changed in the files since the line before, by value, where its texts were kept.
+  std::vector<std::string> changes = {};
 };
 
 /// One suite, as a line of a history tells it.
 struct HistoryLine {
-  std::string revision;  // as the user or git calls it; may be empty
+  std::string revision;       // as the user or git calls it; may be empty
+  std::string subject, date;  // of the commit, "2026-03-01"; may be empty
   // These identify the suite.
   std::vector<std::string> paths;
   std::string only;

@@ -36,6 +36,37 @@ const char* outcome_letter(const HistoryCase& one) {
   return one.outcome == "error" ? "!" : "&#183;";
 }
 
+/// Cases by what came of them.
+struct OutcomeCount {
+  std::size_t passed = 0, failed = 0, other = 0;
+
+  std::size_t all() const { return passed + failed + other; }
+  /// "1 of 3 cases failed, 1 gave no answer", "all 3 cases passed"
+  std::string text() const {
+    if (all() == 0) return "no cases";
+    if (passed == all()) {
+      return all() == 1 ? "the case passed" : fmt::format("all {} cases passed", all());
+    }
+    const auto open = other == 0 ? "" : fmt::format("{} gave no answer", other);
+    if (failed == 0) return fmt::format("{} passed, {}", base::counted(passed, "case"), open);
+    return fmt::format("{} of {} failed{}{}", failed, base::counted(all(), "case"),
+                       other == 0 ? "" : ", ", open);
+  }
+};
+
+std::string capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 32);
+  return text;
+}
+
+OutcomeCount count_of(const HistoryLine& line) {
+  OutcomeCount out;
+  for (const auto& [name, one] : line.cases) {
+    ++(one.outcome == "passed" ? out.passed : one.outcome == "failed" ? out.failed : out.other);
+  }
+  return out;
+}
+
 /// One suite of the history: the last lines are shown.
 class SuitePart {
  public:
@@ -46,13 +77,11 @@ class SuitePart {
   }
 
   std::size_t changes() const { return changes_.points.size(); }
+  const HistoryLine& last() const { return history_.lines[suite_.back()]; }
 
   std::string html(std::size_t number) const {
-    const auto& last = history_.lines[suite_.back()];
-    auto body = fmt::format("<p>{} lines, the last of {}.</p>\n", suite_.size(),
-                            html_short(line_name(history_, suite_.back())));
-    body += changes_html() + outcomes_table() + rate_plots();
-    return section_of(fmt::format("suite-{}", number), "Suite " + html_short(last.suite_text()),
+    const auto body = changes_html() + revisions_table() + outcomes_table() + rate_plots();
+    return section_of(fmt::format("suite-{}", number), "Suite " + html_short(last().suite_text()),
                       body);
   }
 
@@ -66,14 +95,17 @@ class SuitePart {
     for (std::size_t k = 0; k < points.size() && k < kMostChanges; ++k) {
       const auto& point = points[points.size() - 1 - k];
       const bool rate = point.kind == ChangePoint::Kind::kRate;
-      rows += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}{}</td></tr>\n",
-                          html_short(line_name(history_, suite_[point.line])),
-                          html_short(point.name), html_short(point.words),
-                          rate ? ", adjusted " + harness::p_text(point.p_value) : std::string());
+      rows += fmt::format(
+          "<tr><th scope=\"row\">{}</th><td data-label=\"Case\">{}</td>"
+          "<td data-label=\"What\">{}{}</td></tr>\n",
+          html_short(line_name(history_, suite_[point.line])), html_short(point.name),
+          html_short(point.words),
+          rate ? ", adjusted " + harness::p_text(point.p_value) : std::string());
     }
     if (rows.empty()) rows = "<tr><td colspan=\"3\">nothing</td></tr>\n";
     auto out =
-        "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"What changed\"><table>"
+        "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"What changed\"><table "
+        "class=\"flow\">"
         "<caption>What changed, the newest first</caption><thead><tr><th scope=\"col\">At</th>"
         "<th scope=\"col\">Case</th><th scope=\"col\">What</th></tr></thead><tbody>\n" +
         rows + "</tbody></table></div>\n";
@@ -87,6 +119,24 @@ class SuitePart {
                      "chance has a probability of at most {}, shared by all looks and all rates "
                      "({} comparisons so far).</p>\n",
                      harness::percent_up(1.0 - changes_.confidence), changes_.comparisons);
+  }
+
+  /// A row for each line, the newest first.
+  std::string revisions_table() const {
+    std::string rows;
+    for (std::size_t i = suite_.size(); i-- > first_;) {
+      rows += fmt::format(
+          "<tr><th scope=\"row\">{}</th><td data-label=\"Date\">{}</td><td data-label=\"Subject\">"
+          "{}</td><td data-label=\"Cases\">{}</td></tr>\n",
+          html_short(line_name(history_, suite_[i])), html_short(line(i).date),
+          html_short(line(i).subject), html_short(count_of(line(i)).text()));
+    }
+    return "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Revisions\">"
+           "<table class=\"flow\"><caption>Revisions, the newest first</caption><thead><tr><th "
+           "scope=\"col\">"
+           "Revision</th><th scope=\"col\">Date</th><th scope=\"col\">Subject</th>"
+           "<th scope=\"col\">Cases</th></tr></thead><tbody>\n" +
+           rows + "</tbody></table></div>\n";
   }
 
   std::vector<std::string> names() const {
@@ -173,17 +223,17 @@ class SuitePart {
     for (std::size_t i = first_; i < suite_.size(); ++i) {
       const auto at = line(i).cases.find(name);
       if (at == line(i).cases.end()) continue;
-      for (const auto& rate : at->second.rates) {
-        if (rate.of != of) continue;
-        const double px_x = x.at(static_cast<double>(i - first_));
-        const double share = static_cast<double>(rate.count) / static_cast<double>(rate.runs);
-        out += tools::line(px_x, y.at(rate.lower), px_x, y.at(rate.upper), "border") +
-               fmt::format(
-                   "<circle class=\"stop\" cx=\"{}\" cy=\"{}\" r=\"3\"><title>{}: {} of "
-                   "{}</title></circle>\n",
-                   px(px_x), px(y.at(share)), html_short(line_name(history_, suite_[i])),
-                   rate.count, rate.runs);
-      }
+      // A cause that was not seen is a rate, too.
+      const auto rate = measured_rate(at->second, of);
+      if (!rate) continue;
+      const double px_x = x.at(static_cast<double>(i - first_));
+      const double share = static_cast<double>(rate->count) / static_cast<double>(rate->runs);
+      out += tools::line(px_x, y.at(rate->lower), px_x, y.at(rate->upper), "border") +
+             fmt::format(
+                 "<circle class=\"stop\" cx=\"{}\" cy=\"{}\" r=\"3\"><title>{}: {} of "
+                 "{}</title></circle>\n",
+                 px(px_x), px(y.at(share)), html_short(line_name(history_, suite_[i])), rate->count,
+                 rate->runs);
     }
     for (const auto& point : changes_.points) {
       const bool is_its = point.kind == ChangePoint::Kind::kRate && point.name == name &&
@@ -208,25 +258,41 @@ std::string history_page(const History& history, const std::string& file, double
   const auto suites = suites_of(history);
   std::string parts;
   std::size_t changes = 0;
+  OutcomeCount state;
   for (std::size_t i = 0; i < suites.size(); ++i) {
     const SuitePart part(history, suites[i], confidence);
     changes += part.changes();
+    const auto now = count_of(part.last());
+    state.passed += now.passed;
+    state.failed += now.failed;
+    state.other += now.other;
     parts += part.html(i + 1);
   }
   std::string banners;
   for (const auto& remark : remarks_on(history, file)) {
     banners += "<p class=\"banner\">" + html_short(remark) + "</p>\n";
   }
+  std::string at;
+  if (!history.lines.empty()) {
+    const auto& last = history.lines.back();
+    at = " at " + html_short(line_name(history, history.lines.size() - 1));
+    for (const auto* word : {&last.date, &last.subject}) {
+      if (!word->empty()) at += ", " + html_short(*word);
+    }
+  }
   const auto body = fmt::format(
-      "<header class=\"top {}\"><p class=\"kicker\">parallax suite --history: {}</p><h1>{} "
-      "in {}</h1></header>\n{}<main id=\"main\">\n{}</main>\n",
-      changes > 0 ? "open" : "clean", html_short(file), base::counted(changes, "change"),
-      base::counted(std::ssize(history.lines), "line"), banners, parts);
+      "<header class=\"top {}\"><p class=\"kicker\">parallax suite --history: {}</p><h1>{}</h1>"
+      "<p>{} in {}{}</p></header>\n{}<main id=\"main\">\n{}</main>\n",
+      state.failed > 0  ? "bad"
+      : state.other > 0 ? "open"
+                        : "clean",
+      html_short(file), html_short(capital(state.text())), base::counted(changes, "change"),
+      base::counted(std::ssize(history.lines), "line"), at, banners, parts);
   DocumentOptions options;
   options.style =
       ".tl td.v.clean{background:var(--clean-bg)}.tl td.v.bad{background:var(--bad-bg)}"
       ".tl td.v.lost{background:var(--lost-bg)}.tl td.v{text-align:center}";
-  return html_document("parallax history: " + file, body, options);
+  return html_document(fmt::format("{}: history {}", capital(state.text()), file), body, options);
 }
 
 }  // namespace parallax::tools

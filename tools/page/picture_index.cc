@@ -12,9 +12,12 @@ namespace parallax::tools {
 namespace {
 
 std::string picture_figure(const PictureStep& step, bool with_link) {
-  return fmt::format("<figure class=\"picture\">{}<figcaption>{}</figcaption></figure>\n", step.svg,
-                     with_link ? fmt::format("<a href=\"{0}\">{0}</a>", html_short(step.file))
-                               : html_short(step.title));
+  return fmt::format(
+      "<figure class=\"picture\"><div class=\"view\" tabindex=\"0\" role=\"group\" "
+      "aria-label=\"{}\">{}</div><figcaption>{}</figcaption></figure>\n",
+      html_short(step.title), step.svg,
+      with_link ? fmt::format("<a href=\"{0}\">{0}</a>", html_short(step.file))
+                : html_short(step.title));
 }
 
 std::string event_rows(const PictureIndex& index) {
@@ -66,7 +69,12 @@ std::string picture_index(const PictureIndex& index) {
   body += section_of("pictures", "All pictures", all);
   DocumentOptions options;
   options.style =
-      ".picture { margin: .6rem 0; }\n.scene { max-width: 100%; height: auto; }\n" + index.style;
+      ".picture { margin: .6rem 0; }\n.scene { max-width: 100%; height: auto; }\n"
+      // A narrow screen shows a part of each picture at its own size.
+      "@media screen and (max-width: 700px) { .view { overflow-x: auto; } .scene { max-width: "
+      "none; } "
+      "}\n" +
+      index.style;
   return html_document("parallax pictures: " + index.scenario, body + "</main>\n", options);
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "compiler/base/utf8.h"
 #include "compiler/base/words.h"
 #include "harness/campaign/run_setup.h"
 #include "harness/cause/failure_rule.h"
@@ -26,7 +27,7 @@ using harness::SampleRow;
 using harness::TraceRates;
 
 constexpr std::size_t kMostCauses = 12, kMostRatedTraces = 40;
-constexpr double kRowHigh = 26.0, kSettleWide = 460.0, kSettleHigh = 270.0;
+constexpr double kRowHigh = 26.0, kSettleWide = 460.0, kSettleHigh = 270.0, kLineHigh = 15.0;
 
 std::string path_of(const std::vector<std::pair<double, double>>& points,
                     std::string_view classes) {
@@ -49,7 +50,26 @@ std::string count_text(const CauseRate& rate, std::int64_t runs) {
   return fmt::format("{} of {}", rate.count, runs);
 }
 
-/// One line for each cause: its rate and interval.
+/// A name in lines that fit into the plot; at most three.
+std::vector<std::string> name_lines(const std::string& name) {
+  constexpr std::size_t kWide = 54, kLines = 3;
+  std::vector<std::string> out;
+  for (std::string_view rest = name; !rest.empty() && out.size() < kLines;) {
+    auto end = std::min(rest.size(), kWide);
+    if (end < rest.size()) {
+      const auto space = rest.rfind(' ', end);
+      if (space != rest.npos && space > kWide / 2) end = space;
+      while (end < rest.size() && base::continues_code_point(rest[end])) ++end;
+    }
+    out.emplace_back(rest.substr(0, end));
+    rest.remove_prefix(std::min(rest.size(), rest.find_first_not_of(' ', end)));
+    if (!rest.empty() && out.size() == kLines) out.back() += " \xE2\x80\xA6";
+  }
+  return out;
+}
+
+/// One line for each cause: its rate and interval. As wide as a narrow screen, where it is shown at
+/// its own size.
 std::string causes_plot(const TraceRates& trace) {
   std::vector<const CauseRate*> rows = {&trace.any};
   for (const auto& rate : trace.causes) {
@@ -57,25 +77,30 @@ std::string causes_plot(const TraceRates& trace) {
   }
   double most = 0.05;
   for (const auto* rate : rows) most = std::max(most, rate->upper);
-  const PlotAxis x{0.0, std::min(1.0, 1.05 * most), 20.0, 620.0};
-  const double bottom = 20.0 + 2.0 * kRowHigh * static_cast<double>(rows.size());
-  auto out = fmt::format(
-      "<svg class=\"plot causes\" viewBox=\"0 0 720 {}\" role=\"img\" aria-label=\"How often each "
-      "cause comes in trace {}\">\n",
-      px(bottom + 40.0), trace.number);
-  for (const double share : ticks(0.0, x.high, 6)) {
-    out += line(x.at(share), 8.0, x.at(share), bottom, "grid") +
-           label(x.at(share), bottom + 16.0, "middle", percent(share));
-  }
+  const PlotAxis x{0.0, std::min(1.0, 1.05 * most), 16.0, kSettleWide - 90.0};
+  std::string whiskers;
   double y = 26.0;
   for (const auto* rate : rows) {
     const auto name = rate == &trace.any ? std::string("any discrepancy") : rate->cause;
-    out += label(x.from, y, "name", html_short(name));
-    out += whisker(x.at(rate->lower), x.at(rate->upper), x.at(rate->rate), y + 15.0);
-    out += label(x.at(rate->upper) + 8.0, y + 19.0, "", count_text(*rate, trace.runs));
-    y += 2.0 * kRowHigh;
+    for (const auto& words : name_lines(name)) {
+      whiskers += label(x.from, y, "name", html_short(words));
+      y += kLineHigh;
+    }
+    whiskers += whisker(x.at(rate->lower), x.at(rate->upper), x.at(rate->rate), y);
+    whiskers += label(x.at(rate->upper) + 8.0, y + 4.0, "", count_text(*rate, trace.runs));
+    y += 2.0 * kRowHigh - kLineHigh;
   }
-  return out + label(0.5 * (x.from + x.to), bottom + 34.0, "middle name", "share of the runs") +
+  const double bottom = y - 6.0;
+  auto out = fmt::format(
+      "<svg class=\"plot causes\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"How often each "
+      "cause comes in trace {}\">\n",
+      px(kSettleWide), px(bottom + 40.0), trace.number);
+  for (const double share : ticks(0.0, x.high, 5)) {
+    out += line(x.at(share), 8.0, x.at(share), bottom, "grid") +
+           label(x.at(share), bottom + 16.0, "middle", percent(share));
+  }
+  return out + whiskers +
+         label(0.5 * (x.from + x.to), bottom + 34.0, "middle name", "share of the runs") +
          "</svg>\n";
 }
 
@@ -257,11 +282,12 @@ std::string trace_part(const TraceRates& trace, const std::vector<const SampleRo
                                  html_short(trace.trace), trace.runs, trace.rejected, trace.lost);
   if (trace.unseen > 0) body += " " + html_short(harness::unseen_text(trace.unseen)) + ".";
   body +=
-      "</p>\n<figure><figcaption>How often each cause is the first to lead away from what is "
+      "</p>\n<div class=\"panels\"><figure><figcaption>How often each cause is the first to lead "
+      "away from what is "
       "predicted, with ";
-  body +=
-      fmt::format("{} intervals ({})</figcaption>{}</figure>\n", harness::level_text(confidence),
-                  harness::interval_name(result), causes_plot(trace));
+  body += fmt::format("{} intervals ({})</figcaption>{}</figure></div>\n",
+                      harness::level_text(confidence), harness::interval_name(result),
+                      causes_plot(trace));
   if (trace.causes.size() > kMostCauses) {
     body += fmt::format("<p>{} rarer causes are in the table alone.</p>\n",
                         trace.causes.size() - kMostCauses);

@@ -35,6 +35,10 @@ std::set<std::string> last_names(const StoredResults& earlier, const std::string
   if (is_comparable({suite.paths, suite.only, suite.fast})) {
     for (const auto& [name, one] : earlier.cases) out.insert(name);
   }
+  const std::string all;
+  if (is_comparable({suite.paths, all, false})) {
+    out.insert(earlier.known.begin(), earlier.known.end());
+  }
   std::error_code error;
   if (history.empty() || !std::filesystem::exists(history, error)) return out;
   base::DiagnosticSink unread;  // one that cannot be read is refused elsewhere
@@ -45,6 +49,14 @@ std::set<std::string> last_names(const StoredResults& earlier, const std::string
     for (const auto& [name, one] : line->cases) out.insert(name);
     break;
   }
+  return out;
+}
+
+std::set<std::string> known_names(const StoredResults& earlier, const SuiteIdentity& suite) {
+  const bool is_whole = suite.only.empty() && !suite.fast;
+  if (is_whole || earlier.identity.paths != suite.paths) return {};
+  auto out = earlier.known;
+  for (const auto& [name, one] : earlier.cases) out.insert(name);
   return out;
 }
 

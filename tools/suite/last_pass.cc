@@ -1,5 +1,6 @@
 #include "tools/suite/last_pass.h"
 
+#include <algorithm>
 #include <system_error>
 
 #include "compiler/base/file_io.h"
@@ -43,16 +44,29 @@ std::optional<Json> texts_of(const std::vector<InputFile>& inputs) {
 
 }  // namespace
 
+std::string files_hash(const std::vector<InputFile>& inputs) {
+  std::vector<std::string> contents;
+  for (const auto& input : inputs) contents.push_back(input.sha256);
+  std::sort(contents.begin(), contents.end());
+  std::string all;
+  for (const auto& content : contents) all += content + '\n';
+  return all.empty() ? all : base::sha256_hex(all);
+}
+
 std::string LastPasses::definition_of(const SuiteCase& one) {
   return case_definition(one, CaseKey{});  // whatever the program and the seed
 }
 
 fs::path LastPasses::folder_of(const SuiteCase& one) const {
-  return folder_ / "passed" / base::sha256_hex(one.name()).substr(0, 32);
+  return folder_ / name_ / base::sha256_hex(one.name()).substr(0, 32);
 }
 
 void LastPasses::keep(const SuiteCase& one, const CaseResult& result) const {
-  if (result.outcome != Outcome::kPassed || result.inputs.empty()) return;
+  if (result.outcome == Outcome::kPassed) keep_any(one, result);
+}
+
+void LastPasses::keep_any(const SuiteCase& one, const CaseResult& result) const {
+  if (result.inputs.empty()) return;
   auto inputs = program_hash() + definition_of(one);
   for (const auto& input : result.inputs) inputs += '\0' + input.path + '\0' + input.sha256;
   const auto folder = folder_of(one);
@@ -68,6 +82,7 @@ void LastPasses::keep(const SuiteCase& one, const CaseResult& result) const {
   const Json json = {{"case", one.name()},
                      {"program", program_hash()},
                      {"definition", definition_of(one)},
+                     {"files", files_hash(result.inputs)},
                      {"texts", *texts}};
   base::DiagnosticSink unread;  // a cache that cannot be kept harms no suite
   fs::create_directories(folder, error);
@@ -92,7 +107,11 @@ std::optional<LastPass> LastPasses::find(const SuiteCase& one) const {
     if (!is_text(program) || !is_text(definition) || texts == nullptr || !texts->is_object()) {
       continue;
     }
-    LastPass out{program->get<std::string>(), definition->get<std::string>(), {}};
+    const auto* files = base::json_member(json, "files");
+    LastPass out{program->get<std::string>(),
+                 definition->get<std::string>(),
+                 is_text(files) ? files->get<std::string>() : std::string(),
+                 {}};
     for (const auto& [path, content] : texts->items()) {
       if (!content.is_string()) return std::nullopt;
       out.texts.emplace(base::absolute_name(path), content.get<std::string>());

@@ -2,8 +2,10 @@
 
 #include <atomic>
 #include <string>
+#include <vector>
 
 #include "tools/suite/footprint.h"
+#include "tools/suite/last_pass.h"
 #include "tools/suite/suite_runner.h"
 
 namespace parallax::tools {
@@ -13,5 +15,11 @@ namespace parallax::tools {
 /// against it, the edit that it depends on. Empty where no pass is known.
 std::string since_last_pass(const SuiteCase& one, const RunnerOptions& options,
                             const Footprint& footprint, const std::atomic<bool>& stop);
+
+/// What changed in the files of a case by value, a line each ("world.bodies.box.mass_kg 0.3 -> 3"):
+/// settings, declarations and axioms, and forms of the plan, without solving anything.
+std::vector<std::string> changed_values(const SuiteCase& one, const LastPass& before,
+                                        const CaseResult& result, const RunnerOptions& options,
+                                        const std::atomic<bool>& stop);
 
 }  // namespace parallax::tools

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "compiler/base/json.h"
-#include "compiler/base/sha256.h"
+#include "tools/suite/last_pass.h"
 
 namespace parallax::tools {
 namespace {
@@ -36,16 +34,6 @@ MeasuredRate measured(const Json& rate, std::string of, const Json& trace, const
   out.confidence = value_or(all, "confidence", 0.95);
   out.fixed = value_or<std::string>(all, "intervals", {}) != "anytime";
   return out;
-}
-
-/// All files that were read, wherever the checkout lies.
-std::string hash_of(const std::vector<InputFile>& inputs) {
-  std::vector<std::string> contents;
-  for (const auto& input : inputs) contents.push_back(input.sha256);
-  std::sort(contents.begin(), contents.end());
-  std::string all;
-  for (const auto& content : contents) all += content + '\n';
-  return all.empty() ? all : base::sha256_hex(all);
 }
 
 }  // namespace
@@ -90,7 +78,7 @@ HistoryLine history_line(const SuiteRecord& record, const SuiteIdentity& suite,
     one.outcome = to_string(result.outcome);
     one.verdict = result.verdict;
     one.rates = result.rates;
-    one.files = hash_of(result.inputs);
+    one.files = files_hash(result.inputs);
     one.flaky = result.flaky();
     one.wall_s = result.wall_s;
     out.wall_s += result.wall_s;

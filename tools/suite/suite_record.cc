@@ -174,7 +174,9 @@ SuiteRecord::SuiteRecord(std::vector<SuiteCase> cases, const std::vector<bool>& 
 
 void SuiteRecord::forget_removed() {
   for (const auto& one : cases_) {
-    if (one.is_removed) stored_.cases.erase(one.name());
+    if (!one.is_removed) continue;
+    stored_.cases.erase(one.name());
+    stored_.known.erase(one.name());
   }
 }
 

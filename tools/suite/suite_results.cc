@@ -219,6 +219,9 @@ base::Result<StoredResults> read_results(const fs::path& folder, base::Diagnosti
     if (!stored) return refused();
     out.cases.emplace(name, *std::move(stored));
   }
+  std::vector<std::string> known;
+  read_texts(json, "known", known);
+  out.known.insert(known.begin(), known.end());
   return out;
 }
 
@@ -245,8 +248,9 @@ base::Status write_results(const fs::path& folder, StoredResults stored,
   }
   std::error_code error;
   fs::create_directories(folder, error);
-  const Json json = {
+  Json json = {
       {"schema_version", 2}, {"suite", to_json(stored.identity)}, {"cases", std::move(list)}};
+  if (!stored.known.empty()) json["known"] = stored.known;
   // Names are bytes of paths: what is no UTF-8 is replaced rather than refused.
   return base::write_file_atomically(folder / kResultsFile, base::json_text(json, 2) + '\n', sink);
 }

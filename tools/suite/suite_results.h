@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,6 +47,8 @@ using StoredCases = std::map<std::string, StoredCase>;
 struct StoredResults {
   SuiteIdentity identity;
   StoredCases cases;
+  /// All names that earlier suites of the same paths knew, where this one looked at fewer cases.
+  std::set<std::string> known = {};
 };
 
 /// The file in the suite's output folder that --resume, --rerun-failed and --merge read.

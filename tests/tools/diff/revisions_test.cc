@@ -59,7 +59,7 @@ class Project : public GitFixture {
     write("p/suite.yaml",
           "cases:\n  - {id: fetched, model: scenario.yaml, expect: {traces: 1}}\n"
           "  - {id: other, model: other.e, expect: {traces: 4}}\n");
-    write(".gitignore", "out\nbefore\n*.yaml.md\nh.jsonl\n");
+    write(".gitignore", "out\nbefore\n*.yaml.md\n*.jsonl\n");
     write(
         "gate.yaml",
         "models: {lost_traces: forbidden, gained_traces: forbidden, axioms: forbidden,\n"
@@ -237,16 +237,33 @@ TEST_CASE("diff and the gate say what is true of thirty revisions") {
   }
 }
 
+const std::vector<std::string> kHistory = {"suite",    "p/suite.yaml", "--out",
+                                           "out/told", "--history",    "told.jsonl"};
+
+/// The line of a history says by value what a revision changed, and nothing where nothing did.
+void check_history(const Project& p, const Revision& revision) {
+  CAPTURE(revision.subject);
+  const auto told = p.parallax(kHistory).err;
+  const bool changes = *revision.told != '\0';
+  CHECK_MESSAGE(has(told, "p/suite.yaml:fetched: ") == changes, told);
+  // diff counts axioms, and the history says which.
+  const bool counts = revision.told == std::string("axioms: 1 changed");
+  const bool adds = revision.told == std::string("axioms: 1 added");
+  CHECK_MESSAGE(has(told, adds ? "added: " : counts ? ", now " : revision.told), told);
+}
+
 TEST_CASE("the suite, its history and bisect name the revision that broke a case") {
   const Project p;
   p.commit("start");
   const auto first = p.git({"rev-parse", "HEAD"});
+  p.parallax(kHistory);
   std::string broken, mended;
   for (const auto& revision : revisions_of(p)) {
     revision.edit();
     const auto hash = p.commit(revision.subject);
     if (std::string(revision.subject) == "Pick up in the first cell only") broken = hash;
     if (std::string(revision.subject) == "Pick up in every cell again") mended = hash;
+    check_history(p, revision);
     if (revision.kind != Kind::kModel && revision.kind != Kind::kComment) continue;
     const auto suite =
         p.parallax({"suite", "p/suite.yaml", "--cache", "out/cache", "--history", "h.jsonl"});

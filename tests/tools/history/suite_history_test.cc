@@ -153,6 +153,68 @@ TEST_CASE("verdicts and rates of scenarios stand in the line, also of passes tha
   CHECK(holds(cli.read("history.html"), "Rates with their intervals"));
 }
 
+TEST_CASE("each line says by value what changed in the files of a case") {
+  const GitFixture cli;
+  fs::create_directories(cli.folder() / "s");
+  for (const auto* name : {"scenario.yaml", "common.yaml", "world.yaml", "domain.e", "start.e",
+                           "fetch.lisp", "robot.bind"}) {
+    fs::copy(cli.folder() / name, cli.folder() / "s" / name);
+  }
+  cli.write("s/suite.yaml", "cases:\n  - {id: a, model: scenario.yaml, expect: {traces: 1}}\n");
+  cli.write("s/lamp.e", kLamp);
+  cli.write("s/lamps.yaml", "cases:\n  - {id: b, model: lamp.e, expect: {traces: 2}}\n");
+  const auto told = [&](const std::string& revision, int code) {
+    const auto result = cli.parallax(
+        {"suite", "s", "--only", ".yaml:", "--history", "h.jsonl", "--revision", revision});
+    CHECK_MESSAGE(result.code == code, result.err);
+    return result.err;
+  };
+  told("r1", 0);
+  cli.replace("s/world.yaml", "mass_kg: 0.3", "mass_kg: 0.35");
+  const auto second = told("r2", 0);
+  CHECK_MESSAGE(holds(second,
+                      "r2: s/suite.yaml:a: passed as before; world.bodies.box.mass_kg 0.3 "
+                      "-> 0.35"),
+                second);
+  CHECK_FALSE(holds(second, "r2: s/lamps.yaml"));
+  cli.write("s/lamp.e", std::string(kLamp) + "[time] !Happens(Press(),time).\n");
+  cli.write("s/world.yaml", cli.read("s/world.yaml") + "# That is all.\n");
+  const auto third = told("r3", 1);
+  CHECK_MESSAGE(holds(third,
+                      "r3: s/lamps.yaml:b: passed, then failed; files that it reads changed: "
+                      "added: [time] !Happens(Press(),time)."),
+                third);
+  // A comment changes no value.
+  CHECK_FALSE(holds(third, "r3: s/suite.yaml:a"));
+  const auto lines = lines_of(cli.read("h.jsonl"));
+  CHECK(lines[1]["cases"]["s/suite.yaml:a"]["changes"] ==
+        Json::array({"world.bodies.box.mass_kg 0.3 -> 0.35"}));
+  const auto page = cli.parallax({"report", "--history", "h.jsonl", "-o", "h.html"});
+  CHECK(holds(page.out, "world.bodies.box.mass_kg 0.3 -> 0.35"));
+  const auto html = cli.read("h.html");
+  CHECK(holds(html, "mass_kg 0.3 -&gt; 0.35"));
+  CHECK(holds(html, "<h1>1 of 2 cases failed</h1>"));
+}
+
+TEST_CASE("the page tells the present state, and subject and date of each revision") {
+  const GitFixture repository;
+  fs::create_directories(repository.folder() / "s");
+  repository.write("s/lamp.e", kLamp);
+  repository.write("s/suite.yaml", "cases:\n  - {id: a, model: lamp.e, expect: {traces: 2}}\n");
+  repository.commit("Light a lamp");
+  CHECK(repository.parallax({"suite", "s", "--history", "h.jsonl"}).code == 0);
+  const auto line = lines_of(repository.read("h.jsonl")).back();
+  CHECK(line["subject"] == "Light a lamp");
+  const auto date = repository.git({"log", "-1", "--format=%cs"});
+  CHECK(line["date"] == date);
+  CHECK(repository.parallax({"report", "--history", "h.jsonl", "-o", "h.html"}).code == 0);
+  const auto html = repository.read("h.html");
+  CHECK(holds(html, "<h1>The case passed</h1>"));
+  CHECK(holds(html, "<td data-label=\"Date\">" + date + "</td>"));
+  CHECK(holds(html, "<td data-label=\"Subject\">Light a lamp</td>"));
+  CHECK(holds(html, "<td data-label=\"Cases\">the case passed</td>"));
+}
+
 TEST_CASE("half-written lines and lines of others are passed over and said") {
   const SuiteFixture cli;
   REQUIRE(cli.suite({"--update-goldens"}).code == 0);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/rounding.h"
@@ -13,6 +14,7 @@
 #include "tools/page/gather.h"
 #include "tools/page/markup.h"
 #include "tools/page/plot.h"
+#include "tools/page/rates_page.h"
 #include "tools/page/write_page.h"
 
 namespace parallax::test {
@@ -399,6 +401,33 @@ TEST_CASE("a report of any kind of damage gives what it has") {
   CHECK(page.traces[0].steps.size() == 1);
   const auto shown = check_html(run_page(page));
   for (const auto& fault : shown.faults) FAIL_CHECK(fault);
+}
+
+TEST_CASE("the charts of rates are no wider than what a narrow screen can show") {
+  harness::RatesResult result;
+  auto& trace = result.traces.emplace_back();
+  trace.number = 1;
+  trace.runs = 60;
+  trace.any.cause = "any";
+  trace.any.upper = 0.4;
+  harness::CauseRate rate;
+  rate.cause =
+      "PutDown(cup1,table): first not At(cup1,table), then a reason of many words that ends";
+  rate.count = 18;
+  rate.upper = 0.4;
+  trace.causes = {rate};
+  const auto page = rates_page(result, {});
+  const std::regex view("<svg[^>]*viewBox=\"0 0 ([0-9]+)");
+  std::size_t charts = 0;
+  for (std::sregex_iterator at(page.begin(), page.end(), view), end; at != end; ++at) {
+    ++charts;
+    CHECK(std::stoi((*at)[1]) <= 460);
+  }
+  CHECK(charts > 0);
+  // A long name takes several lines, none of which leaves the chart.
+  CHECK(page.find(">PutDown(cup1,table): first not At(cup1,table), then a</text>") !=
+        std::string::npos);
+  CHECK(page.find(">reason of many words that ends</text>") != std::string::npos);
 }
 
 TEST_CASE("ticks are round, within the axis, and few") {

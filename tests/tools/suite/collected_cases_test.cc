@@ -68,6 +68,23 @@ TEST_CASE("a case that is gone is told and counted, once") {
   CHECK(cli.suite({}).code == 0);
 }
 
+TEST_CASE("a suite that looks at fewer cases hides none that is gone") {
+  for (const std::string narrow : {"--only", "--fast"}) {
+    const SuiteFixture cli;
+    REQUIRE(cli.suite({"--update-goldens"}).code == 0);
+    take_out(cli);
+    const auto options = narrow == "--only" ? std::vector<std::string>{narrow, "both"}
+                                            : std::vector<std::string>{narrow};
+    const auto looked = cli.suite(options);
+    // What it looks at it tells itself.
+    CHECK(looked.code == (narrow == "--only" ? 0 : 4));
+    const auto whole = cli.suite({});
+    CHECK(whole.code == (narrow == "--only" ? 4 : 0));
+    CHECK(holds(whole.out, "GONE  s/suite.yaml:lit") == (narrow == "--only"));
+    CHECK(cli.suite({}).code == 0);
+  }
+}
+
 TEST_CASE("a suite that is killed before it tells what is gone hides nothing") {
   const SuiteFixture cli;
   REQUIRE(cli.suite({"--update-goldens"}).code == 0);

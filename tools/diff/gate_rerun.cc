@@ -1,0 +1,117 @@
+// The rule of a gate that demands runs where the physics of a scenario changed.
+#include <fmt/format.h>
+
+#include "compiler/base/words.h"
+#include "harness/confidence/rounding.h"
+#include "tools/diff/gate.h"
+#include "tools/diff/kept_difference.h"
+
+namespace parallax::tools {
+namespace {
+
+bool is_answered(const RuleResult& rule) { return rule.rerun && rule.rerun->problem.empty(); }
+
+/// How the rates of one trace changed, and its causes of today below.
+std::string trace_text(const RevisionRates& old, const RevisionRates& now,
+                       const std::string& words) {
+  auto out = fmt::format("{}: {}\n", old.events, words);
+  for (const auto& cause : now.causes) {
+    if (cause.count == 0) continue;
+    out +=
+        fmt::format("  {}: {} before, {} now\n", cause.text, times(old, cause.text), cause.count);
+  }
+  return out;
+}
+
+/// `error`: shared by the traces of all rules, which are `traces`.
+void judge(RuleResult& rule, double error, std::size_t traces) {
+  const auto& evidence = *rule.rerun;
+  const auto& worse = evidence.rule.worse;
+  std::size_t broken = 0, open = 0;
+  std::string lines, only;
+  for (const auto& old : evidence.before.traces) {
+    const auto& now = *rates_for(evidence.after, old.events);
+    const auto change = change_of(evidence.before, evidence.after, old, now);
+    std::string words;
+    const auto outcome = weigh_change(change, worse, {error, traces}, words);
+    broken += outcome == RuleOutcome::kBroken ? 1 : 0;
+    open += outcome == RuleOutcome::kUndecided ? 1 : 0;
+    only = words;
+    lines += trace_text(old, now, words);
+  }
+  const auto all = evidence.before.traces.size();
+  rule.outcome = broken > 0 ? RuleOutcome::kBroken
+                 : open > 0 ? RuleOutcome::kUndecided
+                            : RuleOutcome::kKept;
+  std::string words = only;
+  if (all > 1 && broken > 0) {
+    words = fmt::format("{} of {} rates are worse", broken, all);
+  } else if (all > 1 && open > 0) {
+    words = fmt::format("{} of {} rates are not known to be worse by less than {}", open, all,
+                        harness::percent_up(worse.margin));
+  } else if (all > 1) {
+    words =
+        fmt::format("{} rates, none worse by {} or more", all, harness::percent_up(worse.margin));
+  }
+  rule.words = fmt::format("{}; {}; {} of each trace, old and new, with seed {}", evidence.changes,
+                           words, base::counted(evidence.rule.runs, "run"), evidence.rule.seed);
+  rule.witness = evidence.listed + lines;
+}
+
+RuleResult run_both(const ModelDifference& found, const RerunSide& before, const RerunSide& after,
+                    const GateInput& input, const harness::GateRules::Rerun& rule,
+                    const Context& context) {
+  auto out = setting_rule(found, {"physics", harness::GateRules::Demand::kForbidden});
+  if (out.outcome != RuleOutcome::kBroken) return out;
+  auto evidence = std::make_shared<RerunEvidence>();
+  evidence->rule = rule;
+  evidence->changes = out.words;
+  evidence->listed = out.witness;
+  if (input.rerunner == nullptr) {
+    evidence->problem = "nothing can be run here";
+  } else {
+    input.rerunner->run(before, after, context, *evidence);
+  }
+  out.outcome = RuleOutcome::kUndecided;
+  out.words = fmt::format("{}; {}", evidence->changes, evidence->problem);
+  out.rerun = std::move(evidence);
+  return out;
+}
+
+}  // namespace
+
+RuleResult rerun_rule(const ModelDifference& found, const GateInput& input,
+                      const harness::GateRules::Rerun& rule, Context& context) {
+  return run_both(found, {input.old_path, input.old_path, input.models.old_commands, false},
+                  {input.new_path, input.new_path, input.models.new_commands, false}, input, rule,
+                  context);
+}
+
+RuleResult kept_rerun_rule(const std::string& old_folder, const std::string& new_folder,
+                           const GateInput& input, const harness::GateRules::Rerun& rule,
+                           Context& context) {
+  const KeptPair pair(old_folder, new_folder, context);
+  const auto found = pair.refused().empty() ? pair.compare(context) : std::nullopt;
+  if (!found) {
+    return {"runs.physics", RuleOutcome::kUndecided,
+            pair.refused().empty() ? "the texts that the runs kept cannot be read any more"
+                                   : pair.refused()};
+  }
+  auto out =
+      run_both(*found, {pair.before().string(), old_folder, std::nullopt, true},
+               {pair.after().string(), new_folder, std::nullopt, true}, input, rule, context);
+  out.rule = "runs.physics";
+  return out;
+}
+
+void judge_reruns(std::vector<RuleResult>& rules) {
+  std::size_t traces = 0;
+  for (const auto& rule : rules) {
+    if (is_answered(rule)) traces += rule.rerun->before.traces.size();
+  }
+  for (auto& rule : rules) {
+    if (is_answered(rule)) judge(rule, 1.0 - rule.rerun->rule.worse.confidence, traces);
+  }
+}
+
+}  // namespace parallax::tools
