@@ -13,14 +13,7 @@ constexpr int kTries = 4;  // events that are tried before a walk waits
 /// Ground events that no axiom demands, by name.
 std::map<std::string, std::vector<std::string>> performed_events(const ModelText& model) {
   const auto declared = read_declarations(model.declarations);
-  std::set<std::string> demanded;
-  for (const auto& line : model.rules) {
-    const auto axiom = read_axiom(line);
-    if (axiom.kind != AxiomText::Kind::kTrigger) continue;
-    if (const auto head = read_term(axiom.conclusion[0])) {
-      if (const auto event = read_term(head->arguments[0])) demanded.insert(event->name);
-    }
-  }
+  const auto demanded = demanded_events(model);
   std::map<std::string, std::vector<std::string>> out;
   for (const auto& [name, sorts] : declared.events) {
     if (demanded.count(name) != 0) continue;

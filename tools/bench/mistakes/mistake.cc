@@ -378,6 +378,18 @@ const char* to_string(MistakeKind kind) {
   return kNames.at(static_cast<std::size_t>(kind));
 }
 
+std::set<std::string> demanded_events(const ModelText& model) {
+  std::set<std::string> out;
+  for (const auto& line : model.rules) {
+    const auto axiom = read_axiom(line);
+    if (axiom.kind != Kind::kTrigger) continue;
+    const auto head = read_term(axiom.conclusion[0]);
+    const auto event = head ? read_term(head->arguments[0]) : std::nullopt;
+    if (event) out.insert(event->name);
+  }
+  return out;
+}
+
 std::vector<Mistake> make_mistakes(const ModelText& model, std::size_t per_kind) {
   const auto all = MistakeMaker(model).all();
   std::vector<Mistake> out;

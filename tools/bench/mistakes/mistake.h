@@ -5,6 +5,7 @@
 // list is the same in every run.
 
 #include <cstddef>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,9 @@ struct Mistake {
 struct ModelText {
   std::vector<std::string> declarations, rules, start;
 };
+
+/// Events that an axiom demands, by name.
+std::set<std::string> demanded_events(const ModelText& model);
 
 /// Mistakes in the order of kinds and lines, at most `per_kind` of a kind, spread evenly over all
 /// that the model has room for.

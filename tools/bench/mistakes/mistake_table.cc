@@ -68,6 +68,8 @@ std::vector<MistakeCounts> count_mistakes(const std::vector<MistakeOutcome>& out
     const std::string name = to_string(static_cast<MistakeKind>(kind));
     add(name, [&](const MistakeOutcome& outcome) { return outcome.kind == name; });
   }
+  add("axioms of triggered events",
+      [&](const MistakeOutcome& outcome) { return is_single(outcome) && outcome.of_demanded; });
   add("all single mistakes", is_single);
   add(kDouble, [&](const MistakeOutcome& outcome) { return !is_single(outcome); });
   return out;

@@ -17,8 +17,9 @@ struct MistakeCounts {
   std::vector<double> list_s;  // sorted
 };
 
-/// One of each world, of the held-out worlds and of the others, of each kind, and of all single
-/// mistakes; doubles are a kind of their own and count nowhere else.
+/// One of each world, of the held-out worlds and of the others, of each kind, of the axioms
+/// of triggered events, and of all single mistakes; doubles are a kind of their own and count
+/// nowhere else.
 std::vector<MistakeCounts> count_mistakes(const std::vector<MistakeOutcome>& outcomes);
 
 /// One row of the table in words.

@@ -73,6 +73,7 @@ std::string to_json(const MistakeOutcome& outcome) {
               {"number", outcome.number},
               {"kind", outcome.kind},
               {"about", outcome.about},
+              {"of_demanded", outcome.of_demanded},
               {"shown", to_string(outcome.shown)},
               {"proposals", outcome.proposals},
               {"right_rank", outcome.right_rank},
@@ -92,6 +93,7 @@ std::optional<MistakeOutcome> read_outcome(const std::string& line) {
   out.number = in["number"];
   out.kind = in["kind"];
   out.about = in["about"];
+  out.of_demanded = in.value("of_demanded", false);
   for (int i = 0; i <= static_cast<int>(Shown::kNoModel); ++i) {
     if (in["shown"] == to_string(static_cast<Shown>(i))) out.shown = static_cast<Shown>(i);
   }
@@ -263,6 +265,8 @@ MistakeOutcome MistakeTrial::measure(const std::vector<Mistake>& mistakes, int n
   outcome.kind = mistakes.size() > 1 ? "two mistakes" : to_string(mistakes[0].kind);
   for (const auto& mistake : mistakes) {
     const auto& lines = mistake.in_start ? model_.start : model_.rules;
+    const auto demanded = terms_in(lines[mistake.line], demanded_events(model_));
+    outcome.of_demanded = outcome.of_demanded || !demanded.empty();
     outcome.about += (outcome.about.empty() ? "" : "; ") + lines[mistake.line] + " => " +
                      (mistake.text.empty() ? "(dropped)" : mistake.text);
   }

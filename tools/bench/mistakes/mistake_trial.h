@@ -35,9 +35,10 @@ const char* to_string(Shown shown);
 /// One mistake, or two at once, and the proposals for it.
 struct MistakeOutcome {
   std::string world;
-  int number = 0;     // within the world; doubles are counted from 1000 on
-  std::string kind;   // "two mistakes" for doubles
-  std::string about;  // the wrong lines
+  int number = 0;            // within the world; doubles are counted from 1000 on
+  std::string kind;          // "two mistakes" for doubles
+  std::string about;         // the wrong lines
+  bool of_demanded = false;  // a wrong line is about an event that an axiom demands
   Shown shown = Shown::kNoModel;
   int proposals = 0;
   int right_rank = 0;         // of the first proposal that is right on the plan of the run; 0: none
