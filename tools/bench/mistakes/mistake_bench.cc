@@ -25,11 +25,11 @@ struct Course {
   std::vector<Mistake> mistakes;
   std::vector<std::size_t> order;
   std::size_t next = 0;
-  std::vector<std::size_t> shown = {};  // numbers of single mistakes that a run has shown
+  std::vector<std::size_t> shown = {};  // numbers of single mistakes that the first plan shows
   std::size_t next_double = 0;
 };
 
-/// The i-th pair of shown mistakes in different lines, or none if there are too few.
+/// The i-th pair of such mistakes in different lines, or none if there are too few.
 std::vector<Mistake> pair_of(const Course& course, std::size_t i) {
   const auto count = course.shown.size();
   for (std::size_t further = 1; further < count; ++further) {
@@ -83,7 +83,7 @@ std::vector<MistakeOutcome> measure_mistakes(const MistakeBenchOptions& options,
       goes_on = true;
       const auto at = course.order[course.next++];
       const auto outcome = measured(course, world, {course.mistakes[at]}, static_cast<int>(at));
-      if (outcome.counts() && outcome.shown != Shown::kRefused) course.shown.push_back(at);
+      if (outcome.shown == Shown::kFirstPlan) course.shown.push_back(at);
     }
   }
   for (std::size_t i = 0; i < options.doubles; ++i) {

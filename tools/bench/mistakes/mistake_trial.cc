@@ -50,7 +50,9 @@ json document(const std::string& text) {
 }
 
 bool is_filled(const json& proposal, const char* key) {
-  return proposal.contains(key) && proposal[key].is_array() && !proposal[key].empty();
+  const auto found = proposal.find(key);
+  if (found == proposal.end()) return false;
+  return found->is_string() ? !found->get<std::string>().empty() : !found->empty();
 }
 
 }  // namespace
