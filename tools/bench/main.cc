@@ -38,6 +38,7 @@ const std::vector<Section>& sections() {
       {"starts", "executions until a plan is covered, uniform and guided", measure_starts},
       {"demo", "the demo", measure_demo},
       {"build", "building the program; measured only if it is named", measure_build, true},
+      {"repair", "mistakes put into models; measured only if it is named", measure_repair, true},
   };
   return all;
 }
