@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <sstream>
@@ -20,7 +22,7 @@ constexpr const char* kLamps =
 struct Stranger {
   std::map<int, std::string> names;  // "HoldsAt On(A) 2" by variable
   std::vector<std::vector<int>> clauses;
-  std::vector<int> shown;
+  std::vector<int> shown, hits;
 
   explicit Stranger(const std::string& text) {
     std::map<std::string, int> frame;
@@ -42,6 +44,9 @@ struct Stranger {
       int number = 0;
       if (dec == "p" && key == "show") {
         while (words >> number && number != 0) shown.push_back(number);
+      } else if (dec == "dec" && key == "atom") {
+        words >> number >> name;
+        if (name == "Hit") hits.push_back(number);
       } else if (dec == "dec" && (key == "horizon" || key == "base" || key == "stride")) {
         words >> frame[key];
       } else if (dec == "dec" && (key == "fluent" || key == "event")) {
@@ -260,6 +265,56 @@ TEST_CASE("a stranger's reader and another solver agree with us") {
   std::set<int> named;
   for (const auto& [variable, name] : stranger.names) named.insert(variable);
   CHECK(std::set<int>(stranger.shown.begin(), stranger.shown.end()) == named);
+}
+
+/// Models of the clauses that differ in a shown variable, counted by another solver.
+std::size_t counted_by_minisat(const CliFixture& cli, std::vector<std::vector<int>> clauses,
+                               const std::vector<int>& shown) {
+  const std::set<int> is_shown(shown.begin(), shown.end());
+  for (std::size_t count = 0;; ++count) {
+    REQUIRE(count < 1000);
+    int variables = 0;
+    std::ostringstream text;
+    for (const auto& clause : clauses) {
+      for (const int literal : clause) {
+        variables = std::max(variables, std::abs(literal));
+        text << literal << ' ';
+      }
+      text << "0\n";
+    }
+    cli.write("count.cnf", "p cnf " + std::to_string(variables) + ' ' +
+                               std::to_string(clauses.size()) + '\n' + text.str());
+    std::string model;
+    if (!minisat_says_satisfiable(cli, "count.cnf", model)) return count;
+    auto& other = clauses.emplace_back();
+    std::istringstream words(model.substr(model.find('\n') + 1));
+    for (int literal = 0; words >> literal && literal != 0;) {
+      if (is_shown.contains(std::abs(literal))) other.push_back(-literal);
+    }
+    REQUIRE(!other.empty());
+  }
+}
+
+TEST_CASE("another solver counts as many traces, also with plans and constraints") {
+  if (!minisat_is_installed()) {
+    MESSAGE("SKIPPED: minisat is not installed");
+    return;
+  }
+  const CliFixture cli;
+  for (const std::string name :
+       {"two_regions/edge", "ward/weight", "ward/bring", "kitchen/plan2"}) {
+    CAPTURE(name);
+    const auto scenario = std::string(PARALLAX_SOURCE_DIR) + "/scenarios/" + name + ".yaml";
+    REQUIRE(cli.parallax({"compile", scenario, "-o", "s.dec.cnf"}).code == 0);
+    const Stranger stranger(cli.read("s.dec.cnf"));
+    REQUIRE(!stranger.hits.empty());
+    auto clauses = stranger.clauses;
+    clauses.push_back(stranger.hits);
+    const auto count = counted_by_minisat(cli, std::move(clauses), stranger.shown);
+    CHECK(count > 0);
+    CHECK(cli.parallax({"traces", scenario, "--split-initial", "--limit", "0", "--count"}).out ==
+          std::to_string(count) + '\n');
+  }
 }
 
 }  // namespace parallax::test

@@ -11,6 +11,8 @@
 #include "compiler/base/words.h"
 #include "tools/cli/command.h"
 #include "tools/cli/diff_gate.h"
+#include "tools/cli/diff_markdown.h"
+#include "tools/cli/replaceable.h"
 #include "tools/cli/shared_options.h"
 #include "tools/diff/kept_difference.h"
 #include "tools/diff/model_difference.h"
@@ -57,7 +59,14 @@ int print(const DiffOptions& options, const ComparedRevisions& outcome, Invocati
                     !outcome.differs, outcome.kind, quoted(options.old_path),
                     quoted(options.new_path), outcome.fields));
   } else {
-    invocation.result(outcome.text + (outcome.differs ? "" : "no difference\n"));
+    const auto text = outcome.text + (outcome.differs ? "" : "no difference\n");
+    invocation.result(text);
+    if (!options.markdown.empty() &&
+        !base::write_output(options.markdown,
+                            diff_markdown(options.old_path, options.new_path, text),
+                            invocation.files(), invocation.sink())) {
+      return 0;
+    }
   }
   return outcome.differs ? 1 : 0;
 }
@@ -335,6 +344,9 @@ bool is_usable(const DiffOptions& options, Invocation& invocation) {
   if (options.no_traces && options.traces_only) {
     return refuse("--no-traces and --traces-only leave nothing to compare");
   }
+  if (!options.markdown.empty() && options.gate.empty() && invocation.options().json) {
+    return refuse("--markdown goes with --json only under --gate");
+  }
   if (!options.gate.empty() && (options.no_traces || options.traces_only || options.stat)) {
     return refuse("--gate compares what its rules ask for: no --stat, --no-traces, --traces-only");
   }
@@ -377,6 +389,11 @@ int run_diff(const DiffOptions& given, Invocation& invocation) {
   if (names_revisions(options)) {
     return run_revision_gate({options.old_path, options.new_path, options.tree}, input,
                              {options.gate, options.markdown}, invocation);
+  }
+  const auto is_ours = [](std::string_view head) { return head.starts_with(kDiffMark); };
+  if (!options.markdown.empty() && options.gate.empty() &&
+      !check_replaceable(options.markdown, is_ours, invocation.files(), invocation.sink())) {
+    return 0;
   }
   const auto old_kind = kind_of(options.old_path), new_kind = kind_of(options.new_path);
   const bool models = old_kind && new_kind && has_traces(*old_kind) && has_traces(*new_kind);
@@ -441,6 +458,7 @@ Command diff_command() {
       "  parallax diff old.e new.e --horizon 6\n"
       "  parallax diff old.dec.cnf new.dec.cnf --json\n"
       "  parallax diff out/monday out/tuesday --stat\n"
+      "  parallax diff old/scenario.yaml new/scenario.yaml --markdown changes.md\n"
       "  parallax diff --textconv domain.e\n"
       "  parallax diff --gate rules.yaml old.e new.e --markdown gate.md\n"
       "  parallax diff --gate rules.yaml ../base .\n"
@@ -466,8 +484,7 @@ Command diff_command() {
       .file({"yaml"});
   command
       .option("--markdown", options->markdown,
-              "With --gate: write what it says to this file, for a pull request")
-      .needs("--gate")
+              "Write what is told to this file as Markdown, for a pull request")
       .file();
   command
       .option("-j,--jobs", options->jobs,

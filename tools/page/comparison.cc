@@ -261,6 +261,17 @@ std::string causes(const std::vector<PageData>& pages) {
                     table_of("Causes", "<th scope=\"col\">Cause</th>" + column_heads(pages), rows));
 }
 
+/// Text of several lines, each escaped by itself: a line's end is no character to be escaped.
+std::string html_lines(std::string_view text) {
+  std::string out;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const auto end = std::min(text.find('\n', begin), text.size());
+    out += html(text.substr(begin, end - begin)) + '\n';
+    begin = end + 1;
+  }
+  return out;
+}
+
 /// The changes of the scenarios, as `parallax diff` words them.
 std::string changed(const std::vector<PageData>& pages, const std::vector<std::string>& changes) {
   constexpr std::size_t kMostBytes = 20'000;
@@ -269,7 +280,8 @@ std::string changed(const std::vector<PageData>& pages, const std::vector<std::s
     if (changes[i].empty()) continue;
     auto text = changes[i];
     if (text.size() > kMostBytes) text = text.substr(0, text.rfind('\n', kMostBytes)) + "\n...\n";
-    out += fmt::format("<h3>{}</h3>\n<pre>{}</pre>\n", html_short(pages[i + 1].folder), html(text));
+    out += fmt::format("<h3>{}</h3>\n<pre>{}</pre>\n", html_short(pages[i + 1].folder),
+                       html_lines(text));
   }
   if (out.empty()) return {};
   return section_of("changed", "What changed in the scenario",

@@ -450,4 +450,26 @@ TEST_CASE_FIXTURE(DiffFixture, "a canonical text is a model with the same traces
   CHECK(result.out.ends_with("no difference\n"));
 }
 
+TEST_CASE_FIXTURE(DiffFixture, "a difference is written as Markdown, over nothing but its like") {
+  write("old.e", kYale);
+  write("new.e", changed(kYale, "HoldsAt(Alive(),0).", "!HoldsAt(Alive(),0)."));
+  const auto plain = parallax({"diff", "old.e", "new.e", "--no-traces"});
+  const auto both = parallax({"diff", "old.e", "new.e", "--no-traces", "--markdown", "out.md"});
+  CHECK(both.code == 1);
+  CHECK(both.out == plain.out);
+  const auto text = read("out.md");
+  CHECK(text.starts_with("<!-- parallax diff -->\n## old.e and new.e\n\naxioms: "));
+  CHECK_MESSAGE(text.find("\n```diff\n") != std::string::npos, text);
+  CHECK(text.find("!HoldsAt(Alive(),0).") != std::string::npos);
+  CHECK(text.ends_with("```\n"));
+  // Again over its own file; never over another one.
+  CHECK(parallax({"diff", "old.e", "old.e", "--markdown", "out.md"}).code == 0);
+  CHECK(read("out.md").find("no difference") != std::string::npos);
+  write("notes.md", "mine\n");
+  const auto refused = parallax({"diff", "old.e", "new.e", "--markdown", "notes.md"});
+  CHECK(refused.code == 3);
+  CHECK(read("notes.md") == "mine\n");
+  CHECK(parallax({"diff", "old.e", "new.e", "--json", "--markdown", "out.md"}).code == 2);
+}
+
 }  // namespace parallax::test
