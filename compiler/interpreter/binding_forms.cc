@@ -51,19 +51,41 @@ DatumId list_at(FormCompiler& c, std::vector<DatumId> items, DatumId place) {
   return c.data.add_list(items, c.data.source(place));
 }
 
-/// Does the place name a part of a list in a variable?
+/// Does the place name a part of a list or of a designator in a variable?
 bool is_part(const FormCompiler& c, DatumId place) {
-  static constexpr std::string_view kListParts[] = {"car",    "cdr",    "first", "rest", "second",
-                                                    "third",  "fourth", "fifth", "cadr", "caddr",
-                                                    "cadddr", "nth",    "elt",   "getf"};
+  // How many operands each has, and which of them is what it is a part of.
+  struct PlacePart {
+    std::string_view name;
+    std::size_t least = 1, most = 1;
+    std::size_t whole = 1;
+  };
+  static constexpr PlacePart kPlaceParts[] = {{"car"},
+                                              {"cdr"},
+                                              {"first"},
+                                              {"rest"},
+                                              {"second"},
+                                              {"third"},
+                                              {"fourth"},
+                                              {"fifth"},
+                                              {"cadr"},
+                                              {"caddr"},
+                                              {"cadddr"},
+                                              {"last"},
+                                              {"nth", 2, 2, 2},
+                                              {"elt", 2, 2},
+                                              {"getf", 2, 3},
+                                              {"find", 2, 4, 2},
+                                              {"assoc", 2, 2, 2},
+                                              {"description"}};
   const auto head = c.data.head(place).value_or("");
-  if (std::find(std::begin(kListParts), std::end(kListParts), head) == std::end(kListParts))
-    return false;
+  const auto* part = std::find_if(std::begin(kPlaceParts), std::end(kPlaceParts),
+                                  [&](const PlacePart& known) { return known.name == head; });
+  if (part == std::end(kPlaceParts)) return false;
   const auto items = c.data.children(place);
-  const bool indexed = head == "nth" || head == "elt" || head == "getf";
-  if (items.size() != (indexed ? 3U : 2U)) return false;
-  const std::size_t whole = head == "nth" ? 2 : 1;
-  return c.data.is_symbol(items[whole]) || is_part(c, items[whole]);
+  const auto operands = items.size() - 1;
+  if (operands < part->least || operands > part->most) return false;
+  // A place is found by name, or in what another place has.
+  return c.data.is_symbol(items[part->whole]) || is_part(c, items[part->whole]);
 }
 
 /// A new list takes the place of the one in the variable: lists are values here. Others that share

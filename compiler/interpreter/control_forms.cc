@@ -18,6 +18,11 @@ void form_progn(FormCompiler& c, DatumId /*form*/, FormItems items) {
   c.compile_body(items.subspan(1));
 }
 
+/// (locally declaration... form...)
+void form_locally(FormCompiler& c, DatumId /*form*/, FormItems items) {
+  c.compile_body(c.skip_declarations(items.subspan(1)));
+}
+
 /// (eval-when (situation...) form...): there is only one time.
 void form_eval_when(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() < 2) return c.refuse(form, "expected situations and forms");
@@ -386,6 +391,7 @@ void form_holds(FormCompiler& c, DatumId form, FormItems items) {
 
 std::span<const FormEntry> control_forms() {
   static constexpr FormEntry kForms[] = {
+      {"locally", form_locally},
       {"progn", form_progn},
       {"seq", form_progn},
       {"top-level", form_top_level},

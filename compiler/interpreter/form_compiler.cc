@@ -142,30 +142,6 @@ void FormCompiler::compile_datum(DatumId form) {
   }
 }
 
-void FormCompiler::compile_symbol(DatumId symbol) {
-  const auto& name = data.name(symbol);
-  if (name == "nil" || name == "t") return code.constant(datum_value(symbol), symbol);
-  if (const auto* binding = code.lookup(BindingKind::kVariable, name)) {
-    return code.load(*binding, symbol);
-  }
-  if (const auto global = defined.globals.find(data.key(symbol)); global != defined.globals.end()) {
-    code.emit(PlanOp::kLoadGlobal, global->second, 0, symbol);
-    return code.adjust(1);
-  }
-  if (const auto known = robot_global(name, values)) return code.constant(*known, symbol);
-  std::vector<std::string> names;
-  for (const auto& binding : code.scope()) {
-    if (binding.kind == BindingKind::kVariable) names.push_back(binding.name);
-  }
-  for (const auto& [global, index] : defined.globals) names.push_back(global);
-  auto report = error(codes::kUnboundPlanVariable, symbol, name);
-  note_other_package(report, symbol);
-  if (const auto near = base::nearest_name(name, names)) {
-    report.fix(fmt::format("replace `{}` with `{}`", name, *near));
-  }
-  nil(symbol);
-}
-
 void FormCompiler::compile_list(DatumId form) {
   const auto items = data.children(form);
   if (items.empty()) return nil(form);

@@ -49,6 +49,7 @@ class PlanCompiler {
         c_(text, values, sink, interleave),
         reach_(text.data) {
     c_.code.code().classes = FailureClasses(binding.failures);
+    c_.entry_file = entry_file;
   }
 
   base::Result<PlanCode> compile(const std::optional<std::string>& entry) {
@@ -56,6 +57,7 @@ class PlanCompiler {
       return sink_.error(codes::kNoPlanEntry, base::SourceRange{text_.file, 0, 0},
                          "the file has no forms");
     }
+    if (!check_entry_call()) return sink_.already_reported();
     for (const auto form : text_.forms) flatten(form);
     note_designator_use();
     find_reached(entry);
@@ -73,6 +75,23 @@ class PlanCompiler {
   }
 
  private:
+  /// What the user gives as the plan's beginning is one call.
+  bool check_entry_call() {
+    if (!entry_file_) return true;
+    std::vector<DatumId> written;
+    for (const auto form : text_.forms) {
+      if (c_.data.source(form).file == *entry_file_) written.push_back(form);
+    }
+    if (written.size() == 1 && !c_.data.children(written.front()).empty()) return true;
+    const auto place = written.empty()       ? base::SourceRange{*entry_file_, 0, 0}
+                       : written.size() == 1 ? c_.data.source(written.front())
+                                             : c_.data.source(written[1]);
+    (void)sink_.error(codes::kNoPlanEntry, place,
+                      written.size() > 1 ? "the entry is one call, and this is another one"
+                                         : "the entry is empty: give a function or a call of it");
+    return false;
+  }
+
   /// Which names the plan has, whether it tells designators apart, and whether it asks what they
   /// say.
   void note_designator_use() {

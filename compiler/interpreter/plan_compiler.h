@@ -158,6 +158,7 @@ struct PlanCode {
   std::vector<PlanGlobal> globals;
   std::vector<std::string> strings;
   std::vector<CodeGap> gaps;
+  std::vector<std::string> inputs;  // free variables of the entry: the registers from 0 on
   FailureClasses classes;
   std::map<std::string, std::uint32_t, std::less<>> functions;     // the plan's own: their units
   std::map<std::string, std::string, std::less<>> function_names;  // by `package::name`: that name

@@ -217,8 +217,12 @@ ModelValueId Explorer::free_register(const PlanState& state, DatumId form,
   for (const auto value : own) {
     if (!taken.contains(value)) return value;
   }
-  const auto name = fmt::format("?{}{}", variable, graph_.values.size() + 1);
-  own.push_back(graph_.values.add({name, variable}));
+  // No input has that name.
+  auto number = graph_.values.size() + 1;
+  const auto name = [&] { return fmt::format("?{}{}", variable, number); };
+  while (std::find(code_.inputs.begin(), code_.inputs.end(), name()) != code_.inputs.end())
+    ++number;
+  own.push_back(graph_.values.add({name(), variable}));
   return own.back();
 }
 
@@ -366,6 +370,9 @@ void Explorer::write_gaps() {
 
 base::Result<PlanGraph> Explorer::explore() {
   if (!machine_.run_definitions()) return sink_.already_reported();
+  for (const auto& input : code_.inputs) {
+    graph_.inputs.push_back(graph_.values.add({input, input.substr(1)}));
+  }
   jobs_.push_back({machine_.start(), {}, {}, Job::Edge::kEntry, 0});
   while (!full_) {
     auto job = next_job();

@@ -264,6 +264,12 @@ TEST_CASE("branches: the graph says which executions it leaves out") {
   CHECK(gaps(by_turns("(with-failure-handling ((plan-failure (e) (return))) (par (unwind-protect "
                       "(go1) (sig)) (pick)))(go2)")) ==
         Strings{"clean-ups of `par` among what follows it"});
+  // One that only tells others than the robot comes unseen.
+  CHECK(gaps(by_turns("(with-failure-handling ((plan-failure (e) (return))) (par (unwind-protect "
+                      "(go1) (roslisp:ros-info (a b) \"over\") "
+                      "(cram-occasions-events:on-event (make-instance 'robot-state-changed))) "
+                      "(pick)))(go2)"))
+            .empty());
 }
 
 TEST_CASE("branches: one that sleeps again and again brings nothing new") {
