@@ -187,7 +187,8 @@ BuiltinResult current(const BuiltinCall& c) {
 
 /// (reset designator): it begins again with its first solution, which is what it means here.
 BuiltinResult reset(const BuiltinCall& c) {
-  if (designator_at(c, 0) == nullptr) return c.wrong(0, "a designator");
+  const bool fits = c.values.is_nil(c.args[0]) || designator_at(c, 0) != nullptr;
+  if (!fits) return c.wrong(0, "a designator");
   return c.args[0];
 }
 

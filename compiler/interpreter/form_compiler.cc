@@ -26,31 +26,21 @@ struct Hint {
   std::string_view text;
 };
 
-constexpr std::string_view kNoFluents =
-    "there are no fluents; ask the model with `(holds '(fluent argument...))` where it matters";
-
 /// Reactive forms and how to write it instead.
 constexpr Hint kReactive[] = {
-    {"try-all", "use `try-in-order`, which tries one branch after the other"},
     {"partial-order", "write the steps in one of the orders, in a `seq`"},
-    {"whenever", "ask `(holds '(fluent argument...))` after the performs that can change it"},
-    {"wait-for", "ask `(holds '(fluent argument...))`; nothing changes but by performs"},
     {"with-policy", "write the body alone, in a `progn`, and check the policy after its performs"},
     {"with-policies", "write the body alone, in a `progn`, and check them after its performs"},
     {"with-task-suspended", "write the body alone, in a `progn`"},
     {"with-task", "write the body alone, in a `progn`"},
-    {"make-fluent", kNoFluents},
-    {"fl-funcall", kNoFluents},
-    {"fl-and", kNoFluents},
-    {"fl-or", kNoFluents},
-    {"fl-not", kNoFluents},
-    {"fl-eq", kNoFluents},
-    {"pulsed", kNoFluents},
+    {"fl-funcall", "write the function on fluents: `fl-and`, `fl-or`, `fl-not`, `fl<` ..."},
+    {"fl-pulsed", "wait for the fluent's value"},
+    {"pulsed", "wait for the fluent's value"},
 };
 
 constexpr Hint kRejected[] = {
-    {"defstruct", "there are no structures"},
-    {"defclass", "there are no classes"},
+    {"defstruct", "structures are defined at top level"},
+    {"defclass", "classes are defined at top level"},
     {"defmethod", "there are no generic functions; write a function"},
     {"defgeneric", "there are no generic functions; write a function"},
     {"catch", "use `block`"},
@@ -171,12 +161,12 @@ void FormCompiler::compile_list(DatumId form) {
     code.set_height(height + 1);
     return;
   }
-  if (const auto callee = find_callee(*this, items.front()))
-    return compile_call(*this, form, *head, *callee, items.subspan(1));
   if (const auto reader = defined.readers.find(data.key(items.front()));
       reader != defined.readers.end() && items.size() == 2) {
     return compile_reader(*this, form, reader->second, items[1]);
   }
+  if (const auto callee = find_callee(*this, items.front()))
+    return compile_call(*this, form, *head, *callee, items.subspan(1));
   if (is_ignored_call(data.package(items.front()), *head)) {
     check_no_perform(form);
     return nil(form);

@@ -85,6 +85,8 @@ struct PlanDefinitions {
   std::map<std::uint32_t, PlanMacro> local_macros;    // by unit
   std::map<std::uint32_t, PlanUnitSource> unwritten;  // by unit
   std::map<std::string, std::uint32_t, std::less<>> globals;
+  std::map<std::string, std::string, std::less<>> accessors;  // of structures: their slots
+  std::map<std::uint32_t, LexicalBinding> set_globals;        // those that the plan sets
   std::map<std::string, ConditionSlot, std::less<>> readers;  // of conditions, by key
   std::set<std::string, std::less<>> read_initargs;           // of all their slots
   std::map<std::uint32_t, RetryCounter> counters;  // those met so far, by the name's serial

@@ -15,6 +15,7 @@
 #include "compiler/interpreter/function_calls.h"
 #include "compiler/interpreter/lisp_macros.h"
 #include "compiler/interpreter/plan_reach.h"
+#include "compiler/interpreter/plan_structures.h"
 #include "compiler/lisp/lisp_library.h"
 
 namespace parallax::compiler {
@@ -32,6 +33,8 @@ bool is_housekeeping(std::string_view head) {
   return head == "in-package" || head == "defpackage" || head == "declaim" || head == "declare" ||
          head == "proclaim" || head == "export" || head == "def-fact-group";
 }
+
+bool defines_structure(std::string_view head) { return head == "defstruct" || head == "defclass"; }
 
 bool is_definition(std::string_view head) {
   return defines_function(head) || defines_global(head) || head == "defmacro";
@@ -136,6 +139,8 @@ class PlanCompiler {
         if (defines_function(head)) last = c_.data.key(items[1]);
       } else if (head == "define-condition") {
         reach_.add_slots(form);
+      } else if (defines_structure(head)) {
+        read_structure(form);
       } else if (!is_housekeeping(head)) {
         others.push_back(form);
       }
@@ -153,6 +158,43 @@ class PlanCompiler {
       if (bound.plan) names.push_back(entry_key(*bound.plan));
     }
     reach_.find(others, names);
+  }
+
+  /// Its functions count as others do: where something that is reached names them.
+  void read_structure(DatumId form) {
+    PlanStructure structure;
+    if (auto error = compiler::read_structure(c_.data, form, structures_, structure)) {
+      structure_errors_.emplace(form, *std::move(error));
+    }
+    for (const auto function : structure.functions) {
+      reach_.define(c_.data.name(c_.data.children(function)[1]), function);
+      // (make-instance 'class ...) names the class.
+      reach_.define(structure.name, function);
+    }
+    structures_.push_back(std::move(structure));
+    structure_at_.emplace(form, structures_.size() - 1);
+  }
+
+  void define_structure(DatumId form) {
+    if (!structure_at_.contains(form)) read_structure(form);
+    const auto& structure = structures_[structure_at_.at(form)];
+    const bool reached =
+        std::any_of(structure.functions.begin(), structure.functions.end(), [&](DatumId function) {
+          return reach_.contains(c_.data.name(c_.data.children(function)[1]));
+        });
+    if (!reached && !reach_.contains(structure.name)) return;
+    if (const auto error = structure_errors_.find(form); error != structure_errors_.end()) {
+      c_.error(codes::kUnsupportedPlanForm, error->second.at, c_.form_name(form),
+               error->second.text);
+      return;
+    }
+    c_.code.code().classes.add_structure(structure.name);
+    for (const auto function : structure.functions) {
+      const auto items = c_.data.children(function);
+      const auto name = c_.data.name(items[1]);
+      if (!c_.defined.functions.contains(name)) add_function(function, name, items);
+    }
+    for (const auto& [name, slot] : structure.accessors) c_.defined.accessors.emplace(name, slot);
   }
 
   bool define_name(DatumId form, DatumId name) {
@@ -274,6 +316,8 @@ class PlanCompiler {
       define_macro(form, items);
     } else if (defines_global(head)) {
       define_global(form, items);
+    } else if (defines_structure(head)) {
+      define_structure(form);
     } else {
       return is_housekeeping(head) || head == "define-condition";
     }
@@ -420,6 +464,9 @@ class PlanCompiler {
   std::vector<Positioned> others_;      // no definitions, but perhaps calls of macros that define
   std::vector<Positioned> bare_forms_;  // forms to be run
   bool missing_ = false;                // of them, an expansion
+  std::vector<PlanStructure> structures_;
+  std::map<DatumId, std::size_t> structure_at_;
+  std::map<DatumId, StructureError> structure_errors_;
   std::set<std::string, std::less<>> named_;  // all names, but those in definitions of conditions
 };
 

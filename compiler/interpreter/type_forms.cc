@@ -151,6 +151,24 @@ void form_the(FormCompiler& c, DatumId form, FormItems items) {
   c.code.drop(form);
 }
 
+/// (make-instance 'class keyword value...): the class's maker.
+void form_make_instance(FormCompiler& c, DatumId form, FormItems items) {
+  const bool quoted = items.size() > 1 && c.data.head(items[1]) == "quote" &&
+                      c.data.children(items[1]).size() == 2 &&
+                      c.data.is_symbol(c.data.children(items[1])[1]);
+  if (!quoted) return c.refuse(form, "expected a quoted class");
+  const auto name = c.data.children(items[1])[1];
+  const auto maker = "%make-" + std::string(c.data.name(name));
+  if (!c.defined.functions.contains(maker)) {
+    c.unknown_form(form, name);
+    return c.nil(form);
+  }
+  std::vector<DatumId> call = {
+      c.data.add_named(DatumKind::kSymbol, maker, "", c.data.source(form))};
+  call.insert(call.end(), items.begin() + 2, items.end());
+  c.compile(c.data.add_list(call, c.data.source(form)));
+}
+
 /// (type t variable...), the only declaration that SBCL checks and plans use.
 void check_declaration(FormCompiler& c, DatumId declaration) {
   const auto parts = c.data.children(declaration);
@@ -189,6 +207,7 @@ std::span<const FormEntry> type_forms() {
       {"ignore-errors", form_ignore_errors},
       {"handler-bind", form_handler_bind},
       {"the", form_the},
+      {"make-instance", form_make_instance},
   };
   return kForms;
 }

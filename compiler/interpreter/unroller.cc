@@ -256,6 +256,7 @@ std::optional<PlanTarget> Explorer::question(PlanState& state, const StopQuestio
 
 std::optional<PlanTarget> Explorer::stopped(PlanState& state, const PlanStop& stop) {
   if (const auto* at = std::get_if<StopPerform>(&stop)) return perform(state, *at);
+  drop_dead_cells(state, {}, values_);
   if (const auto* at = std::get_if<StopQuestion>(&stop)) return question(state, *at);
   if (const auto* at = std::get_if<StopFailed>(&stop))
     return terminal(TerminalKind::kFailed, at->cause, std::nullopt);
@@ -295,6 +296,7 @@ std::optional<PlanTarget> Explorer::advance(Job& job) {
     if (act == nullptr) return stopped(job.state, stop);
     act->designator = resolve_links(job.state.links, values_, act->designator);
     drop_dead_links(job.state, std::span(&act->designator, 1), values_);
+    drop_dead_cells(job.state, std::span(&act->designator, 1), values_);
     if (!begins) {
       const auto asked = ask_goal(job.state, *act);
       if (!asked.goes_on) return asked.target;

@@ -67,6 +67,35 @@ TEST_CASE("Lisp: parts of lists and designators are places") {
   });
 }
 
+TEST_CASE("Lisp: texts") {
+  check_values({
+      {"(string-capitalize \"a-bc d2e\")", "\"A-Bc D2e\""},
+      {"(list (string-trim \" .\" \" a b. \") (string-left-trim \"x\" \"xxa\") "
+       "(string-right-trim \"x\" \"axx\") (string-trim \"x\" \"xx\"))",
+       "(\"a b\" \"a\" \"a\" \"\")"},
+      {"(list (string< \"ab\" \"ac\") (string< \"b\" \"a\") (string> \"b\" \"a\") "
+       "(string< \"a\" \"ab\"))",
+       "(1 nil 0 1)"},
+      {"(list (parse-integer \"12\") (parse-integer \"-3\"))", "(12 -3)"},
+      {"(handler-case (parse-integer \"1.5\") (error () 'e))", "e"},
+  });
+}
+
+TEST_CASE("Lisp: iterate") {
+  check_values({
+      {"(iter (for x in '(1 2 3)) (collect (* x x)))", "(1 4 9)"},
+      {"(iter (for i from 1 to 4) (when (oddp i) (collect i)))", "(1 3)"},
+      {"(iter (for i below 4) (with n = 10) (incf n i) (finally (return n)))", "16"},
+      {"(iterate (for (a b) in '((1 2) (3 4))) (sum (+ a b)))", "10"},
+      {"(iter (for x in-vector (vector 1 5 2)) (maximizing x))", "5"},
+      {"(iter (for x in '(1 2 3)) (finding x such-that (evenp x)))", "2"},
+      {"(let ((h (make-hash-table))) (setf (gethash 1 h) 2) "
+       "(iter (for (k v) in-hashtable h) (collect (list k v))))",
+       "((1 2))"},
+      {"(iter (for x initially 1 then (* 2 x)) (while (< x 9)) (collect x))", "(1 2 4 8)"},
+  });
+}
+
 TEST_CASE("Lisp: functions of real numbers, and types that are said") {
   check_values({
       {"(list (sqrt 4) (expt 2 10) (expt 2 -1) (expt 0.5 2))", "(2.0 1024 1/2 0.25)"},
