@@ -44,7 +44,7 @@ inline BuiltinFailure not_a_number(const BuiltinCall& c, std::size_t index) {
 /// is.
 inline BuiltinResult first_argument(const BuiltinCall& c) { return c.args[0]; }
 
-/// Of functions that make a fluent of fluents: in CRAM's package these have the names of Lisp's.
+/// Functions that make a fluent of fluents: CRAM's package gives them the names of Lisp's.
 bool takes_fluents(std::string_view builtin);
 bool is_fluent(const Value& value);
 BuiltinResult fluent_network(const BuiltinCall& c);

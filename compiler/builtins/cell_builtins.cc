@@ -52,7 +52,7 @@ bool is_fluent_value(const BuiltinCall& c, ValueId id) { return is_fluent(c.valu
 BuiltinResult compute_now(const BuiltinCall& c, const std::string& operation,
                           const std::vector<ValueId>& arguments);
 
-/// What a fluent is now; another value is itself. As deep as the network.
+/// The value of a fluent now; another value is itself. As deep as the network.
 BuiltinResult fluent_now(const BuiltinCall& c, ValueId id) {
   if (is_cell(c, id, kFluent)) return content_of(c, id);
   if (c.values.kind(id) != ValueKind::kNetwork) return id;

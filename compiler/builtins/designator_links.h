@@ -12,8 +12,8 @@ namespace parallax::compiler {
 
 using DesignatorKeys = std::vector<std::pair<std::string, ValueId>>;
 
-/// What the plan can change beside its variables. Cells are fluents, tables, arrays and structures;
-/// each is told apart by its identity, a number that no designator has either.
+/// Everything that a plan can change beside its variables. Cells are fluents, tables, arrays and
+/// structures; each is told apart by its identity, a number that no designator has either.
 struct PlanHeap {
   std::vector<std::pair<std::uint32_t, ValueId>> cells;    // what each holds; ascending
   std::vector<std::pair<std::uint32_t, ValueId>> globals;  // those that were set; ascending

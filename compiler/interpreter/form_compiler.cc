@@ -41,8 +41,9 @@ constexpr Hint kReactive[] = {
 constexpr Hint kRejected[] = {
     {"defstruct", "structures are defined at top level"},
     {"defclass", "classes are defined at top level"},
-    {"defmethod", "there are no generic functions; write a function"},
-    {"defgeneric", "there are no generic functions; write a function"},
+    {"defmethod", "methods are defined at top level"},
+    {"defgeneric", "generic functions are defined at top level"},
+    {"call-next-method", "write the other method's body out"},
     {"catch", "use `block`"},
     {"throw", "use `return-from`"},
     {"unquote", "a comma needs a backquote around it"},

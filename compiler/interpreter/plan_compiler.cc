@@ -31,7 +31,7 @@ bool defines_global(std::string_view head) {
 
 bool is_housekeeping(std::string_view head) {
   return head == "in-package" || head == "defpackage" || head == "declaim" || head == "declare" ||
-         head == "proclaim" || head == "export" || head == "def-fact-group";
+         head == "proclaim" || head == "export" || head == "def-fact-group" || head == "defgeneric";
 }
 
 bool defines_structure(std::string_view head) { return head == "defstruct" || head == "defclass"; }
@@ -78,7 +78,7 @@ class PlanCompiler {
   }
 
  private:
-  /// What the user gives as the plan's beginning is one call.
+  /// The user gives one call as the plan's beginning.
   bool check_entry_call() {
     if (!entry_file_) return true;
     std::vector<DatumId> written;
@@ -141,9 +141,17 @@ class PlanCompiler {
         reach_.add_slots(form);
       } else if (defines_structure(head)) {
         read_structure(form);
+      } else if (head == "defmethod" && items.size() > 1 && c_.data.is_symbol(items[1])) {
+        methods_[c_.data.key(items[1])].push_back(form);
       } else if (!is_housekeeping(head)) {
         others.push_back(form);
       }
+    }
+    for (const auto& [name, methods] : methods_) {
+      DatumId function;
+      auto error = read_methods(c_.data, methods, structures_, function);
+      if (error) structure_errors_.emplace(methods.front(), *std::move(error));
+      if (!error) reach_.define(name, generics_.emplace(name, function).first->second);
     }
     const auto expands = [&](DatumId form) {
       return c_.data.head(form) && macros.contains(c_.data.key(c_.data.children(form)[0]));
@@ -168,8 +176,7 @@ class PlanCompiler {
     }
     for (const auto function : structure.functions) {
       reach_.define(c_.data.name(c_.data.children(function)[1]), function);
-      // (make-instance 'class ...) names the class.
-      reach_.define(structure.name, function);
+      reach_.define(structure.name, function);  // (make-instance 'class ...) names the class
     }
     structures_.push_back(std::move(structure));
     structure_at_.emplace(form, structures_.size() - 1);
@@ -184,9 +191,7 @@ class PlanCompiler {
         });
     if (!reached && !reach_.contains(structure.name)) return;
     if (const auto error = structure_errors_.find(form); error != structure_errors_.end()) {
-      c_.error(codes::kUnsupportedPlanForm, error->second.at, c_.form_name(form),
-               error->second.text);
-      return;
+      return c_.unsupported(error->second.at, error->second.text);
     }
     c_.code.code().classes.add_structure(structure.name);
     for (const auto function : structure.functions) {
@@ -195,6 +200,15 @@ class PlanCompiler {
       if (!c_.defined.functions.contains(name)) add_function(function, name, items);
     }
     for (const auto& [name, slot] : structure.accessors) c_.defined.accessors.emplace(name, slot);
+  }
+
+  /// All methods of a name are one function, of the first one's place.
+  void define_method(DatumId form, const std::string& name) {
+    if (!reach_.contains(name) || c_.defined.functions.contains(name)) return;
+    if (const auto generic = generics_.find(name); generic != generics_.end()) {
+      return add_function(generic->second, name, c_.data.children(generic->second));
+    }
+    if (structure_errors_.contains(form)) c_.unsupported(form, structure_errors_.at(form).text);
   }
 
   bool define_name(DatumId form, DatumId name) {
@@ -318,6 +332,8 @@ class PlanCompiler {
       define_global(form, items);
     } else if (defines_structure(head)) {
       define_structure(form);
+    } else if (head == "defmethod" && named) {
+      define_method(form, c_.data.key(items[1]));
     } else {
       return is_housekeeping(head) || head == "define-condition";
     }
@@ -465,6 +481,8 @@ class PlanCompiler {
   std::vector<Positioned> bare_forms_;  // forms to be run
   bool missing_ = false;                // of them, an expansion
   std::vector<PlanStructure> structures_;
+  std::map<std::string, std::vector<DatumId>, std::less<>> methods_;  // by name
+  std::map<std::string, DatumId, std::less<>> generics_;  // the function of all methods of a name
   std::map<DatumId, std::size_t> structure_at_;
   std::map<DatumId, StructureError> structure_errors_;
   std::set<std::string, std::less<>> named_;  // all names, but those in definitions of conditions

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 
 namespace parallax::compiler {
@@ -174,7 +175,137 @@ class StructureReader {
   PlanStructure& out_;
 };
 
+/// One method: its parameters, with types, and its body.
+struct Method {
+  DatumId form;
+  std::vector<std::pair<DatumId, std::optional<DatumId>>> required;  // name, type
+  std::vector<DatumId> others;                                       // &key and the like
+  std::vector<DatumId> body;
+  std::vector<int> rank;  // how special each type is
+};
+
+class MethodReader {
+ public:
+  MethodReader(LispData& data, const std::vector<PlanStructure>& known)
+      : data_(data), known_(known) {}
+
+  std::optional<StructureError> read(const std::vector<DatumId>& forms, DatumId& out) {
+    std::vector<Method> methods;
+    for (const auto form : forms) {
+      Method method;
+      if (auto error = read_one(form, method)) return error;
+      const auto& first = methods.empty() ? method : methods.front();
+      if (method.required.size() != first.required.size()) {
+        return StructureError{form, "its methods take different numbers of arguments"};
+      }
+      methods.push_back(std::move(method));
+    }
+    const auto place = methods.front().form;
+    std::stable_sort(methods.begin(), methods.end(),
+                     [](const Method& a, const Method& b) { return a.rank > b.rank; });
+    std::vector<DatumId> arguments;
+    for (std::size_t i = 0; i < methods.front().required.size(); ++i) {
+      arguments.push_back(symbol(place, fmt::format("%argument{}", i)));
+    }
+    std::vector<DatumId> ways = {symbol(place, "cond")};
+    for (const auto& method : methods) ways.push_back(way(method, arguments));
+    ways.push_back(
+        list(place, {symbol(place, "t"),
+                     list(place, {symbol(place, "error"),
+                                  data_.add_named(DatumKind::kString, "no applicable method", "",
+                                                  data_.source(place))})}));
+    auto parameters = arguments;
+    const auto& others = methods.front().others;
+    parameters.insert(parameters.end(), others.begin(), others.end());
+    out = list(place, {symbol(place, "defun"), children(place)[1], list(place, parameters),
+                       list(place, ways)});
+    return std::nullopt;
+  }
+
+ private:
+  std::vector<DatumId> children(DatumId datum) const {
+    const auto items = data_.children(datum);
+    return {items.begin(), items.end()};
+  }
+  DatumId symbol(DatumId place, std::string_view name) {
+    return data_.add_named(DatumKind::kSymbol, name, "", data_.source(place));
+  }
+  DatumId list(DatumId place, const std::vector<DatumId>& items) {
+    return data_.add_list(items, data_.source(place));
+  }
+
+  std::optional<StructureError> read_one(DatumId form, Method& out) {
+    const auto items = children(form);
+    if (items.size() < 3 || (!data_.is_list(items[2]) && !data_.is_nil(items[2]))) {
+      return StructureError{form, "a method with a qualifier"};
+    }
+    out.form = form;
+    out.body.assign(items.begin() + 3, items.end());
+    for (const auto parameter : children(items[2])) {
+      const bool word = data_.is_symbol(parameter) && data_.name(parameter).starts_with('&');
+      if (word || !out.others.empty()) {
+        out.others.push_back(parameter);
+        continue;
+      }
+      const auto parts = data_.is_list(parameter) ? children(parameter) : std::vector{parameter};
+      if (parts.empty() || parts.size() > 2 || !data_.is_symbol(parts[0])) {
+        return StructureError{parameter, "a parameter is a name or (name type)"};
+      }
+      const auto type = parts.size() == 2 ? std::optional(parts[1]) : std::nullopt;
+      out.required.emplace_back(parts[0], type);
+      out.rank.push_back(type ? rank_of(*type) : 0);
+    }
+    return std::nullopt;
+  }
+
+  /// The greater the more special; types that exclude each other may have any order.
+  int rank_of(DatumId type) const {
+    constexpr int kEql = 10'000, kStructure = 1'000;
+    static constexpr std::string_view kTypes[] = {"t",       "sequence", "list",  "symbol",
+                                                  "number",  "real",     "float", "rational",
+                                                  "integer", "cons",     "null",  "keyword"};
+    if (data_.is_list(type)) return kEql;
+    const auto& name = data_.name(type);
+    for (const auto& one : known_) {
+      if (one.name == name) return kStructure + static_cast<int>(one.types.size());
+    }
+    const auto* found = std::find(std::begin(kTypes), std::end(kTypes), name);
+    return static_cast<int>(found - std::begin(kTypes));
+  }
+
+  /// ((and (typep argument 'type)...) (let ((name argument)...) form...))
+  DatumId way(const Method& method, const std::vector<DatumId>& arguments) {
+    std::vector<DatumId> test = {symbol(method.form, "and")}, bindings;
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      const auto& [name, type] = method.required[i];
+      bindings.push_back(list(method.form, {name, arguments[i]}));
+      if (!type) continue;
+      const auto quoted = list(method.form, {symbol(method.form, "quote"), eql_of(*type)});
+      test.push_back(list(method.form, {symbol(method.form, "typep"), arguments[i], quoted}));
+    }
+    std::vector<DatumId> body = {symbol(method.form, "let"), list(method.form, bindings)};
+    body.insert(body.end(), method.body.begin(), method.body.end());
+    return list(method.form, {list(method.form, test), list(method.form, body)});
+  }
+
+  /// (eql 'a) names a value, (eql a) as a type means the symbol.
+  DatumId eql_of(DatumId type) {
+    if (!data_.is_list(type)) return type;
+    auto parts = children(type);
+    if (parts.size() == 2 && data_.head(parts[1]) == "quote") parts[1] = children(parts[1])[1];
+    return list(type, parts);
+  }
+
+  LispData& data_;
+  const std::vector<PlanStructure>& known_;
+};
+
 }  // namespace
+
+std::optional<StructureError> read_methods(LispData& data, const std::vector<DatumId>& methods,
+                                           const std::vector<PlanStructure>& known, DatumId& out) {
+  return MethodReader(data, known).read(methods, out);
+}
 
 std::optional<StructureError> read_structure(LispData& data, DatumId form,
                                              const std::vector<PlanStructure>& known,

@@ -33,4 +33,10 @@ std::optional<StructureError> read_structure(LispData& data, DatumId form,
                                              const std::vector<PlanStructure>& known,
                                              PlanStructure& out);
 
+/// Reads the methods of one generic function, `(defmethod name (parameter or (parameter type)...)
+/// form...)`, as one function: the first method whose types fit, the most special ones first. A
+/// method without fit is a Lisp error.
+std::optional<StructureError> read_methods(LispData& data, const std::vector<DatumId>& methods,
+                                           const std::vector<PlanStructure>& known, DatumId& out);
+
 }  // namespace parallax::compiler

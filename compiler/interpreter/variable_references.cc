@@ -1,4 +1,4 @@
-// What a name means where it stands as a form: a variable, a global, an input of the plan.
+// The meaning of a name that stands as a form: a variable, a global, an input of the plan.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace parallax::compiler {
 
-/// What the global is defined with, if that is written out: macros know it before the plan runs.
+/// The first value of a global, if that is written out: macros know it before the plan runs.
 std::optional<DatumId> FormCompiler::literal_of(std::uint32_t global) const {
   const auto items = data.children(code.code().globals[global].source);
   if (items.size() < 3) return std::nullopt;

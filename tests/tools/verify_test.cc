@@ -413,7 +413,7 @@ TEST_CASE("verify: a violation says what of the model the plan asked for") {
   CHECK(answer["trace"]["ended"] == "done");
   CHECK(cli.parallax(verify).out.find("of what the plan asks for,\n  Fragile(cup)\n") !=
         std::string::npos);
-  // What has to be false counts as well.
+  // Predicates that have to be false count as well.
   cli.write("kinds.lisp",
             "(unless (holds '(fragile cup)) (perform (an action (type taking) (object cup))))\n");
   CHECK(json_of(cli, verify, 1)["inputs"] == nlohmann::json::array({"!Fragile(cup)"}));

@@ -57,7 +57,7 @@ struct CheckedProperty {
   bool by_cubes = false;          // it was searched by cubes, without a log
   std::string proof;              // "proof checked"; empty where there is nothing to prove
   PlanReservations reservations;  // why nothing was proved
-  /// What the plan took in on the way there (plan_inputs).
+  /// The plan's inputs on the way there (plan_inputs).
   std::vector<std::string> inputs;
   std::string proof_origin;                      // what made it, if it was accepted
   std::string proof_file;                        // where it is kept

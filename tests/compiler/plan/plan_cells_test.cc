@@ -105,10 +105,36 @@ TEST_CASE("cells: structures and classes") {
       "(defclass kit () ((size :initarg :size :accessor kit-size :initform 1) "
       "(tools :initform '(a) :reader kit-tools)))"
       "(defclass big-kit (kit) ((size :initarg :size :initform 10)))");
-  // What nothing names does not count.
+  // A structure that nothing names does not count.
   CHECK(with_prelude("(defstruct (odd (:constructor make (a b))) (x (read-it)))(go1)").codes() ==
         Strings{});
   CHECK(unroll(prelude() + "(make-instance 'nothing)").has("CPL010"));
+}
+
+TEST_CASE("cells: methods are chosen by types") {
+  check_values(
+      {
+          {"(list (kind (make-place)) (kind (make-shelf)) (kind 3) (kind 2.5) (kind :stop) (kind "
+           "\"a\"))",
+           "(place shelf integer number stop other)"},
+          {"(list (both 1 (make-shelf)) (both :a (make-place)) (both 1 2))",
+           "(n-shelf any-place none)"},
+          {"(list (scaled 3) (scaled 3 :by 4) (scaled 'a))", "(6 12 (a 2))"},
+          {"(handler-case (only-texts 1) (error () 'e))", "e"},
+          {"(mapcar #'kind (list (make-shelf) 1))", "(shelf integer)"},
+      },
+      "(defstruct place x)(defstruct (shelf (:include place)) level)"
+      "(defgeneric kind (thing) (:documentation \"what it is\"))"
+      "(defmethod kind (thing) 'other)(defmethod kind ((n number)) 'number)"
+      "(defmethod kind ((p place)) 'place)(defmethod kind ((n integer)) 'integer)"
+      "(defmethod kind ((s shelf)) 'shelf)(defmethod kind ((word (eql :stop))) 'stop)"
+      "(defmethod both (a b) 'none)(defmethod both (a (p place)) 'any-place)"
+      "(defmethod both ((n number) (s shelf)) 'n-shelf)"
+      "(defmethod scaled ((n number) &key (by 2)) (* n by))"
+      "(defmethod scaled (thing &key (by 2)) (list thing by))"
+      "(defmethod only-texts ((text string)) text)");
+  CHECK(unroll(prelude() + "(defmethod f :around (x) x)(f 1)").has("CPL013"));
+  CHECK(unroll(prelude() + "(defmethod f (x) (call-next-method))(f 1)").has("CPL013"));
 }
 
 TEST_CASE("cells: globals that are set") {
