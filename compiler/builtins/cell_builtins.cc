@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -50,24 +51,6 @@ BuiltinResult make_fluent(const BuiltinCall& c) {
 bool is_fluent_value(const BuiltinCall& c, ValueId id) { return is_fluent(c.values[id]); }
 
 BuiltinResult compute_now(const BuiltinCall& c, const std::string& operation,
-                          const std::vector<ValueId>& arguments);
-
-/// The value of a fluent now; another value is itself. As deep as the network.
-BuiltinResult fluent_now(const BuiltinCall& c, ValueId id) {
-  if (is_cell(c, id, kFluent)) return content_of(c, id);
-  if (c.values.kind(id) != ValueKind::kNetwork) return id;
-  std::vector<ValueId> arguments;
-  const std::string operation = c.values[id].text;
-  const auto parts = *c.values.elements(c.values[id].head);
-  for (const auto part : parts) {
-    auto known = fluent_now(c, part);
-    if (!std::holds_alternative<ValueId>(known)) return known;
-    arguments.push_back(std::get<ValueId>(known));
-  }
-  return compute_now(c, operation, arguments);
-}
-
-BuiltinResult compute_now(const BuiltinCall& c, const std::string& operation,
                           const std::vector<ValueId>& arguments) {
   const bool all = operation == "fl-and";
   if (all || operation == "fl-or") {
@@ -88,6 +71,36 @@ BuiltinResult compute_now(const BuiltinCall& c, const std::string& operation,
   if (!builtin) return BuiltinFailure{BuiltinError::kValue, "no function on fluents"};
   return call_builtin(*builtin, arguments, c.classes, c.location_samples, c.links, c.values);
 }
+
+/// Networks share their parts: each is computed once.
+class NetworkReader {
+ public:
+  explicit NetworkReader(const BuiltinCall& c) : c_(c) {}
+
+  /// The value of a fluent now; another value is itself.
+  BuiltinResult read(ValueId id, int depth = 0) {
+    constexpr int kDeepest = 1'000;
+    if (is_cell(c_, id, kFluent)) return content_of(c_, id);
+    if (c_.values.kind(id) != ValueKind::kNetwork) return id;
+    if (const auto found = known_.find(id.index()); found != known_.end()) return found->second;
+    if (depth > kDeepest) return BuiltinFailure{BuiltinError::kValue, "fluents nested too deep"};
+    std::vector<ValueId> arguments;
+    const std::string operation = c_.values[id].text;
+    const auto parts = *c_.values.elements(c_.values[id].head);
+    for (const auto part : parts) {
+      auto value = read(part, depth + 1);
+      if (!std::holds_alternative<ValueId>(value)) return value;
+      arguments.push_back(std::get<ValueId>(value));
+    }
+    auto out = compute_now(c_, operation, arguments);
+    if (const auto* value = std::get_if<ValueId>(&out)) known_.emplace(id.index(), *value);
+    return out;
+  }
+
+ private:
+  const BuiltinCall& c_;
+  std::map<std::uint32_t, ValueId> known_;
+};
 
 }  // namespace
 
@@ -120,7 +133,7 @@ namespace {
 
 BuiltinResult value_of(const BuiltinCall& c) {
   if (!is_fluent_value(c, c.args[0])) return c.wrong(0, "a fluent");
-  return fluent_now(c, c.args[0]);
+  return NetworkReader(c).read(c.args[0]);
 }
 
 BuiltinResult set_value(const BuiltinCall& c) {

@@ -178,6 +178,13 @@ TEST_CASE("cells: fluents and networks of them") {
   CHECK(unroll(prelude() + "(let ((f (make-fluent))) (par (wait-for f) (go1)))").has("CPL011"));
 }
 
+TEST_CASE("cells: networks that share their parts are computed once, and not too deep") {
+  const std::string doubled = "(let* ((f (make-fluent :value 1)) (n (fl+ f f))) (dotimes (i ";
+  const auto plan = with_prelude(doubled + "40) (setf n (fl+ n n))) (when (> (value n) 1) (sig)))");
+  CHECK(plan.events("+") == Strings{"Signal()", "DONE"});
+  CHECK(unroll(prelude() + doubled + "2000) (setf n (fl+ n 1))) (value n))").has("CPL008"));
+}
+
 TEST_CASE("cells: branches wait for fluents") {
   const auto ways = [](const std::string& text, const std::set<std::string>& fail = {}) {
     const auto plan = by_turns(text);
