@@ -44,6 +44,11 @@ inline BuiltinFailure not_a_number(const BuiltinCall& c, std::size_t index) {
 /// is.
 inline BuiltinResult first_argument(const BuiltinCall& c) { return c.args[0]; }
 
+/// Functions that make a fluent of fluents: CRAM's package gives them the names of Lisp's.
+bool takes_fluents(std::string_view builtin);
+bool is_fluent(const Value& value);
+BuiltinResult fluent_network(const BuiltinCall& c);
+
 using BuiltinFunction = BuiltinResult (*)(const BuiltinCall&);
 struct BuiltinEntry {
   PlanBuiltin builtin;
@@ -62,5 +67,6 @@ std::span<const BuiltinEntry> pose_part_builtins();
 std::span<const BuiltinEntry> transform_builtins();
 std::span<const BuiltinEntry> frame_builtins();
 std::span<const BuiltinEntry> robot_builtins();
+std::span<const BuiltinEntry> cell_builtins();
 
 }  // namespace parallax::compiler

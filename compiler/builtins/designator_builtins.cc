@@ -168,10 +168,28 @@ BuiltinResult update_properties(const BuiltinCall& c) {
   return c.values.list(out);
 }
 
+/// The same designator with this description: the plan has changed a part of it.
+BuiltinResult with_description(const BuiltinCall& c) {
+  const auto* whole = designator_at(c, 0);
+  if (whole == nullptr || whole->kind == ValueKind::kModel) return c.wrong(0, "a designator");
+  auto keys = keys_at(c, 1);
+  if (const auto* failure = std::get_if<BuiltinFailure>(&keys)) return *failure;
+  Value changed = *whole;
+  changed.keys = std::get<DesignatorKeys>(std::move(keys));
+  return c.values.intern(std::move(changed));
+}
+
 BuiltinResult current(const BuiltinCall& c) {
   if (c.values.is_nil(c.args[0])) return c.args[0];
   if (designator_at(c, 0) == nullptr) return c.wrong(0, "a designator");
   return c.links.current(c.args[0]);
+}
+
+/// (reset designator): it begins again with its first solution, which is what it means here.
+BuiltinResult reset(const BuiltinCall& c) {
+  const bool fits = c.values.is_nil(c.args[0]) || designator_at(c, 0) != nullptr;
+  if (!fits) return c.wrong(0, "a designator");
+  return c.args[0];
 }
 
 BuiltinResult first_designator(const BuiltinCall& c) {
@@ -247,6 +265,7 @@ constexpr BuiltinEntry kDesignatorTable[] = {
     {{"desig-prop-values", 2, 2}, property_values},
     {{"properties", 1, 1}, properties},
     {{"description", 1, 1}, properties},
+    {{"%with-description", 2, 2}, with_description},
     {{"make-designator", 2, 3}, make_designator},
     {{"copy-designator", 1, 3}, copy_designator},
     {{"extend-designator-properties", 2, 2}, extend},
@@ -256,6 +275,7 @@ constexpr BuiltinEntry kDesignatorTable[] = {
     {{"current-desig", 1, 1}, current},
     {{"newest-effective-designator", 1, 1}, current},
     {{"first-desig", 1, 1}, first_designator},
+    {{"reset", 1, 1}, reset},
     {{"get-desig-class", 1, 1}, designator_class_of},
     {{"designatorp", 1, 1}, is_any},
     {{"object-designator-p", 1, 1}, has_class<DesignatorKind::kObject>},

@@ -47,6 +47,56 @@ ValueId DesignatorLinks::make(ValueStore& values, DesignatorKind kind, Designato
   return values.intern(std::move(value));
 }
 
+ValueId DesignatorLinks::make_cell(ValueStore& values, std::string what, ValueId content) {
+  Value value;
+  value.kind = ValueKind::kCell;
+  value.text = std::move(what);
+  value.identity = next++;
+  heap.cells.emplace_back(value.identity, content);
+  return values.intern(std::move(value));
+}
+
+namespace {
+
+/// The entry of a number, or where it would stand.
+template <typename Entries>
+auto entry_of(Entries& entries, std::uint32_t number) {
+  return std::lower_bound(
+      entries.begin(), entries.end(), number,
+      [](const auto& entry, std::uint32_t wanted) { return entry.first < wanted; });
+}
+
+}  // namespace
+
+std::optional<ValueId> PlanHeap::content(const ValueStore& values, ValueId cell) const {
+  if (values.kind(cell) != ValueKind::kCell) return std::nullopt;
+  const auto number = values[cell].identity;
+  const auto found = entry_of(cells, number);
+  if (found == cells.end() || found->first != number) return std::nullopt;
+  return found->second;
+}
+
+void PlanHeap::change(const ValueStore& values, ValueId cell, ValueId content) {
+  const auto number = values[cell].identity;
+  const auto found = entry_of(cells, number);
+  if (found != cells.end() && found->first == number) found->second = content;
+}
+
+std::optional<ValueId> PlanHeap::global(std::uint32_t number) const {
+  const auto found = entry_of(globals, number);
+  if (found == globals.end() || found->first != number) return std::nullopt;
+  return found->second;
+}
+
+void PlanHeap::set_global(std::uint32_t number, ValueId value) {
+  const auto found = entry_of(globals, number);
+  if (found != globals.end() && found->first == number) {
+    found->second = value;
+  } else {
+    globals.insert(found, {number, value});
+  }
+}
+
 bool is_designator(const Value& value) {
   return value.kind == ValueKind::kDesignator || value.kind == ValueKind::kModel;
 }

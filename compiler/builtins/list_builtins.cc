@@ -61,7 +61,11 @@ BuiltinResult length(const BuiltinCall& c) {
   if (value.kind == ValueKind::kString) {
     return c.values.number(Number(static_cast<std::int64_t>(value.text.size())));
   }
-  const auto items = c.values.elements(c.args[0]);
+  auto items = c.values.elements(c.args[0]);
+  if (const auto whole = c.links.heap.content(c.values, c.args[0]);
+      whole && value.text == "array") {
+    items = c.values.elements(c.values[*whole].tail);
+  }
   if (!items) return c.wrong(0, "a list");
   return c.values.number(Number(static_cast<std::int64_t>(items->size())));
 }

@@ -193,7 +193,82 @@ BuiltinResult has_parity(const BuiltinCall& c) {
   return c.values.boolean((number->numerator() % 2 != 0 ? 1 : 0) == kRest);
 }
 
+/// Whole floats are exact, like those that are written.
+Number as_float(double value, bool wide) {
+  constexpr double kExact = 9.0e15;
+  const auto kind = wide ? Number::Kind::kDouble : Number::Kind::kSingle;
+  if (std::abs(value) < kExact && std::floor(value) == value) {
+    return Number(static_cast<std::int64_t>(value)).as_float(kind);
+  }
+  return Number::inexact(value, kind);
+}
+
+/// A function of real numbers, which gives a float.
+template <double (*kFunction)(double)>
+BuiltinResult real(const BuiltinCall& c) {
+  if (c.number(0) == nullptr) return not_a_number(c, 0);
+  const auto& number = *c.number(0);
+  const double value = kFunction(number.value());
+  if (!std::isfinite(value)) return c.wrong(0, "a number for which it is real and finite");
+  const bool wide = number.kind() == Number::Kind::kDouble;
+  return c.values.number(as_float(value, wide));
+}
+
+double root(double x) { return std::sqrt(x); }
+double sine(double x) { return std::sin(x); }
+double cosine(double x) { return std::cos(x); }
+double tangent(double x) { return std::tan(x); }
+double arc_sine(double x) { return std::asin(x); }
+double arc_cosine(double x) { return std::acos(x); }
+double exponential(double x) { return std::exp(x); }
+double arc_tangent_of_one(double x) { return std::atan(x); }
+
+/// (atan y [x])
+BuiltinResult arc_tangent(const BuiltinCall& c) {
+  if (c.args.size() == 1) return real<arc_tangent_of_one>(c);
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (c.number(i) == nullptr) return not_a_number(c, i);
+  }
+  const bool wide =
+      c.number(0)->kind() == Number::Kind::kDouble || c.number(1)->kind() == Number::Kind::kDouble;
+  return c.values.number(as_float(std::atan2(c.number(0)->value(), c.number(1)->value()), wide));
+}
+
+BuiltinResult signum(const BuiltinCall& c) {
+  if (c.number(0) == nullptr) return not_a_number(c, 0);
+  const Number sign(compare(*c.number(0), Number(0)));
+  return c.values.number(c.number(0)->is_float() ? sign.as_float(c.number(0)->kind()) : sign);
+}
+
+/// (expt base power) with an integer as power.
+BuiltinResult power(const BuiltinCall& c) {
+  constexpr std::int64_t kMost = 1'000;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (c.number(i) == nullptr) return not_a_number(c, i);
+  }
+  const auto& exponent = *c.number(1);
+  if (!exponent.is_integer() || std::abs(exponent.numerator()) > kMost) {
+    return c.wrong(1, "an integer from -1000 to 1000");
+  }
+  Number out(1);
+  for (std::int64_t i = 0; i < std::abs(exponent.numerator()); ++i) out = out * *c.number(0);
+  if (exponent.numerator() >= 0) return c.values.number(out);
+  const auto inverse = divide(Number(1), out);
+  if (!inverse) return BuiltinFailure{BuiltinError::kValue, "division by zero"};
+  return c.values.number(*inverse);
+}
+
 constexpr BuiltinEntry kNumberTable[] = {
+    {{"sqrt", 1, 1}, real<root>},
+    {{"sin", 1, 1}, real<sine>},
+    {{"cos", 1, 1}, real<cosine>},
+    {{"tan", 1, 1}, real<tangent>},
+    {{"asin", 1, 1}, real<arc_sine>},
+    {{"acos", 1, 1}, real<arc_cosine>},
+    {{"exp", 1, 1}, real<exponential>},
+    {{"atan", 1, 2}, arc_tangent},
+    {{"signum", 1, 1}, signum},
+    {{"expt", 2, 2}, power},
     {{"floor", 1, 2}, divide_whole<Rounding::kFloor>},
     {{"ceiling", 1, 2}, divide_whole<Rounding::kCeiling>},
     {{"truncate", 1, 2}, divide_whole<Rounding::kTruncate>},

@@ -1,5 +1,6 @@
 #include "compiler/builtins/plan_builtins.h"
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "compiler/builtins/builtin_call.h"
@@ -14,7 +15,7 @@ const std::vector<BuiltinEntry>& table() {
     for (const auto part :
          {number_builtins(), list_builtins(), sequence_builtins(), pattern_builtins(),
           type_builtins(), symbol_builtins(), designator_builtins(), pose_part_builtins(),
-          transform_builtins(), frame_builtins(), robot_builtins()}) {
+          transform_builtins(), frame_builtins(), robot_builtins(), cell_builtins()}) {
       out.insert(out.end(), part.begin(), part.end());
     }
     return out;
@@ -52,7 +53,10 @@ BuiltinResult call_builtin(std::uint32_t builtin, std::span<const ValueId> argum
   const auto& entry = table()[builtin];
   const auto name = entry.builtin.name;
   if (auto term = with_unknown(name, arguments, values)) return *std::move(term);
-  return entry.function(BuiltinCall{arguments, classes, values, links, location_samples, name});
+  const BuiltinCall call{arguments, classes, values, links, location_samples, name};
+  const bool fluents = std::any_of(arguments.begin(), arguments.end(),
+                                   [&](ValueId id) { return is_fluent(values[id]); });
+  return fluents && takes_fluents(name) ? fluent_network(call) : entry.function(call);
 }
 
 }  // namespace parallax::compiler

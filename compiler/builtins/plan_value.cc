@@ -68,8 +68,13 @@ std::string fingerprint(const Value& value) {
       out += fmt::format("{}", value.head.index());
       break;
     case ValueKind::kUnknown:
+    case ValueKind::kNetwork:
       append(out, value.text);
       out += fmt::format("{}", value.head.index());
+      break;
+    case ValueKind::kCell:
+      append(out, value.text);
+      out += fmt::format("{}", value.identity);
       break;
     case ValueKind::kDesignator:
       out += fmt::format("{} {} ", static_cast<int>(value.designator), value.identity);
@@ -131,7 +136,7 @@ void ValueStore::note_parts(Value& value) const {
     include(value.head);
   }
   if (pair) include(value.tail);
-  if (value.kind == ValueKind::kUnknown) include(value.head);
+  if (value.kind == ValueKind::kUnknown || value.kind == ValueKind::kNetwork) include(value.head);
   for (const auto& [key, part] : value.keys) include(part);
   tidy(value.registers), tidy(value.identities);
 }
@@ -332,6 +337,10 @@ std::string ValueStore::print(ValueId id) const {
       return "a function";
     case ValueKind::kValues:
       return "several values";
+    case ValueKind::kCell:
+      return fmt::format("a {}", value.text.substr(0, value.text.find(' ')));
+    case ValueKind::kNetwork:
+      return "a fluent";
   }
   return {};
 }

@@ -37,7 +37,9 @@ enum class ValueKind : std::uint8_t {
   kNotGiven,  // stands for an argument whose default the function computes
   kFurther,   // the rest of a list of solutions, of which only the first is known
   kFunction,
-  kValues,  // the values of a `values` form, not one of them: head is the list of all
+  kValues,   // the values of a `values` form, not one of them: head is the list of all
+  kCell,     // a thing that can be changed, by its identity; text: what it is
+  kNetwork,  // a fluent computed from others: the function, and head is the list of its arguments
 };
 
 enum class DesignatorKind : std::uint8_t { kMotion, kAction, kObject, kLocation, kAllObjects };

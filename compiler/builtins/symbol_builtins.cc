@@ -107,6 +107,56 @@ BuiltinResult change_case(const BuiltinCall& c) {
   return c.values.string(kChange(*text));
 }
 
+/// Words begin with a capital.
+std::string capitalized(std::string text) {
+  bool inside = false;
+  for (auto& letter : text) {
+    const auto small = base::to_lower(letter);
+    const bool in_word = (small >= 'a' && small <= 'z') || (small >= '0' && small <= '9');
+    letter = in_word && !inside ? upper(std::string(1, small)).front() : small;
+    inside = in_word;
+  }
+  return text;
+}
+
+/// (string-trim characters text), and of one end only.
+template <bool kLeft, bool kRight>
+BuiltinResult trim(const BuiltinCall& c) {
+  const auto& characters = c.values[c.args[0]];
+  if (characters.kind != ValueKind::kString) return c.wrong(0, "a string of characters");
+  auto text = text_of(c, 1);
+  if (!text) return c.wrong(1, "a string or a symbol");
+  if (kRight) text->erase(text->find_last_not_of(characters.text) + 1);
+  if (kLeft) text->erase(0, text->find_first_not_of(characters.text));
+  return c.values.string(*text);
+}
+
+/// (string< a b) and its like: where they differ first, if they stand in that order.
+template <bool kLess>
+BuiltinResult ordered_texts(const BuiltinCall& c) {
+  const auto left = text_of(c, 0);
+  const auto right = text_of(c, 1);
+  if (!left) return c.wrong(0, "a string or a symbol");
+  if (!right) return c.wrong(1, "a string or a symbol");
+  if (!(kLess ? *left < *right : *left > *right)) return c.values.nil();
+  const auto length = std::min(left->size(), right->size());
+  const auto [at, other] = std::mismatch(
+      left->begin(), left->begin() + static_cast<std::ptrdiff_t>(length), right->begin());
+  return c.values.number(Number(at - left->begin()));
+}
+
+/// (parse-integer text): a Lisp error if it is none.
+BuiltinResult parse_integer(const BuiltinCall& c) {
+  const auto& text = c.values[c.args[0]];
+  if (text.kind != ValueKind::kString) return c.wrong(0, "a string");
+  Number number;
+  const bool reads = Number::parse(text.text, number) == Number::Parse::kNumber;
+  if (!reads || !number.is_integer() || number.is_float()) {
+    return BuiltinFailure{BuiltinError::kRaise, "simple-error"};
+  }
+  return c.values.number(number);
+}
+
 /// (concatenate 'string a b ...), (concatenate 'list a b ...)
 BuiltinResult concatenate(const BuiltinCall& c) {
   const auto& type = c.values[c.args[0]];
@@ -170,6 +220,8 @@ bool show(const BuiltinCall& c, ValueId id, bool exact, std::string& out, int de
     case ValueKind::kUnknown:
     case ValueKind::kFunction:
     case ValueKind::kValues:
+    case ValueKind::kCell:
+    case ValueKind::kNetwork:
       return false;
   }
   out += '(';
@@ -237,6 +289,13 @@ constexpr BuiltinEntry kSymbolTable[] = {
     {{"string-equal", 2, 2}, equal_texts<true>},
     {{"string-upcase", 1, 1}, change_case<upper>},
     {{"string-downcase", 1, 1}, change_case<lower>},
+    {{"string-capitalize", 1, 1}, change_case<capitalized>},
+    {{"string-trim", 2, 2}, trim<true, true>},
+    {{"string-left-trim", 2, 2}, trim<true, false>},
+    {{"string-right-trim", 2, 2}, trim<false, true>},
+    {{"string<", 2, 2}, ordered_texts<true>},
+    {{"string>", 2, 2}, ordered_texts<false>},
+    {{"parse-integer", 1, 1}, parse_integer},
     {{"concatenate", 1, kAnyNumber}, concatenate},
     {{"%format", 1, kAnyNumber}, format},
     {{"princ-to-string", 1, 1}, to_text<false>},

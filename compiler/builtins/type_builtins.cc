@@ -29,6 +29,12 @@ bool is_boolean(const Value& v) {
   return is(v, ValueKind::kNil) || (is(v, ValueKind::kSymbol) && !v.keyword && v.text == "t");
 }
 
+/// A cell, by the first letter of the word for it.
+template <char kFirst>
+bool is_thing(const Value& v) {
+  return is(v, ValueKind::kCell) && v.text.front() == kFirst;
+}
+
 const std::map<std::string_view, Test>& types() {
   static const std::map<std::string_view, Test> table = {
       {"t", [](const Value&) { return true; }},
@@ -53,6 +59,11 @@ const std::map<std::string_view, Test>& types() {
       {"float", is_float},
       {"single-float", is_kind<Number::Kind::kSingle>},
       {"double-float", is_kind<Number::Kind::kDouble>},
+      {"fluent", is_fluent},
+      {"value-fluent", is_fluent},
+      {"hash-table", is_thing<'h'>},
+      {"array", is_thing<'a'>},
+      {"vector", is_thing<'a'>},
       {"function", [](const Value& v) { return is(v, ValueKind::kFunction); }},
   };
   return table;
@@ -81,6 +92,10 @@ std::optional<bool> has_type(const BuiltinCall& c, ValueId id, ValueId type) {
       return known->second(value);
     }
     if (const auto holds = has_designator_type(value, wanted.text)) return holds;
+    if (c.classes.has_structure(wanted.text)) {
+      return is(value, ValueKind::kCell) &&
+             value.text.find(' ' + wanted.text + ' ') != std::string::npos;
+    }
     const auto failure = c.classes.canonical(wanted.text);
     if (!failure) return std::nullopt;
     return value.kind == ValueKind::kFailure && c.classes.is_a(value.text, *failure);

@@ -103,13 +103,26 @@ std::string_view origin_of_unknown(const ValueStore& values, ValueId id) {
   }
 }
 
-std::optional<BuiltinResult> with_unknown(std::string_view builtin,
-                                          std::span<const ValueId> arguments, ValueStore& values) {
+std::optional<BuiltinResult> with_unknown(std::string_view builtin, std::span<const ValueId> passed,
+                                          ValueStore& values) {
   const auto is_unknown = [&](ValueId argument) {
     return values.kind(argument) == ValueKind::kUnknown;
   };
+  // A location that says no pose is its own reference; where a pose is needed, the robot knows it.
+  const auto is_location = [&](ValueId argument) {
+    const auto& value = values[argument];
+    return value.kind == ValueKind::kDesignator && value.designator == DesignatorKind::kLocation;
+  };
   // Checked at every call: known arguments cost no more than this.
-  if (std::none_of(arguments.begin(), arguments.end(), is_unknown)) return std::nullopt;
+  const bool located =
+      std::any_of(passed.begin(), passed.end(), is_location) && computes_poses(builtin);
+  if (!located && std::none_of(passed.begin(), passed.end(), is_unknown)) return std::nullopt;
+  std::vector<ValueId> arguments(passed.begin(), passed.end());
+  for (auto& argument : arguments) {
+    if (located && is_location(argument)) {
+      argument = unknown_value("reference", std::span(&argument, 1), values);
+    }
+  }
   const bool poses = computes_poses(builtin);
   const auto unknown = std::find_if(arguments.begin(), arguments.end(), [&](ValueId argument) {
     const auto& value = values[argument];

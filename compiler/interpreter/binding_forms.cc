@@ -51,19 +51,80 @@ DatumId list_at(FormCompiler& c, std::vector<DatumId> items, DatumId place) {
   return c.data.add_list(items, c.data.source(place));
 }
 
-/// Does the place name a part of a list in a variable?
-bool is_part(const FormCompiler& c, DatumId place) {
-  static constexpr std::string_view kListParts[] = {"car",    "cdr",    "first", "rest", "second",
-                                                    "third",  "fourth", "fifth", "cadr", "caddr",
-                                                    "cadddr", "nth",    "elt",   "getf"};
-  const auto head = c.data.head(place).value_or("");
-  if (std::find(std::begin(kListParts), std::end(kListParts), head) == std::end(kListParts))
-    return false;
+/// Does the place name what a thing holds: a fluent, a table, an array or a structure?
+bool is_cell_place(const FormCompiler& c, DatumId place) {
+  struct Cell {
+    std::string_view name;
+    std::size_t least = 1, most = 1;  // operands
+  };
+  static constexpr Cell kCells[] = {
+      {"value"}, {"gethash", 2, 3}, {"aref", 1, 100}, {"svref", 2, 2}, {"slot-value", 2, 2}};
   const auto items = c.data.children(place);
-  const bool indexed = head == "nth" || head == "elt" || head == "getf";
-  if (items.size() != (indexed ? 3U : 2U)) return false;
-  const std::size_t whole = head == "nth" ? 2 : 1;
-  return c.data.is_symbol(items[whole]) || is_part(c, items[whole]);
+  const auto head = c.data.head(place).value_or("");
+  if (head.empty()) return false;
+  if (c.defined.accessors.contains(c.data.key(items[0]))) return items.size() == 2;
+  const auto* cell = std::find_if(std::begin(kCells), std::end(kCells),
+                                  [&](const Cell& known) { return known.name == head; });
+  const auto operands = items.size() - 1;
+  if (cell == std::end(kCells) || operands < cell->least || operands > cell->most) return false;
+  return !c.defined.functions.contains(c.data.key(items[0]));
+}
+
+/// The operands of the place are computed before the value, which stays on the stack.
+void set_cell(FormCompiler& c, DatumId form, DatumId place, DatumId value) {
+  const auto items = c.data.children(place);
+  const std::string head(*c.data.head(place));
+  const bool table = head == "gethash";
+  for (std::size_t i = 1; i < items.size(); ++i) {
+    c.compile(items[i]);
+    if (table && i > 2) c.code.drop(form);  // the default
+  }
+  const auto accessor = c.defined.accessors.find(c.data.key(items[0]));
+  const bool slot = accessor != c.defined.accessors.end();
+  if (slot) c.code.constant(c.values.symbol(accessor->second), form);
+  c.compile(value);
+  if (slot || head == "slot-value") return c.code.builtin("%set-slot", 3, form);
+  if (table) return c.code.builtin("%set-hash", 3, form);
+  if (head == "value") return c.code.builtin("%set-value", 2, form);
+  c.code.builtin("%set-aref", static_cast<std::uint32_t>(items.size()), form);
+}
+
+/// Does the place name a part of a list or of a designator in a variable?
+bool is_part(const FormCompiler& c, DatumId place) {
+  // How many operands each has, and which of them is what it is a part of.
+  struct PlacePart {
+    std::string_view name;
+    std::size_t least = 1, most = 1;
+    std::size_t whole = 1;
+  };
+  static constexpr PlacePart kPlaceParts[] = {{"car"},
+                                              {"cdr"},
+                                              {"first"},
+                                              {"rest"},
+                                              {"second"},
+                                              {"third"},
+                                              {"fourth"},
+                                              {"fifth"},
+                                              {"cadr"},
+                                              {"caddr"},
+                                              {"cadddr"},
+                                              {"last"},
+                                              {"nth", 2, 2, 2},
+                                              {"elt", 2, 2},
+                                              {"getf", 2, 3},
+                                              {"find", 2, 4, 2},
+                                              {"assoc", 2, 2, 2},
+                                              {"description"}};
+  const auto head = c.data.head(place).value_or("");
+  const auto* part = std::find_if(std::begin(kPlaceParts), std::end(kPlaceParts),
+                                  [&](const PlacePart& known) { return known.name == head; });
+  if (part == std::end(kPlaceParts)) return false;
+  const auto items = c.data.children(place);
+  const auto operands = items.size() - 1;
+  if (operands < part->least || operands > part->most) return false;
+  // A place is found by name, or in what another place has.
+  const auto whole = items[part->whole];
+  return c.data.is_symbol(whole) || is_cell_place(c, whole) || is_part(c, whole);
 }
 
 /// A new list takes the place of the one in the variable: lists are values here. Others that share
@@ -71,7 +132,10 @@ bool is_part(const FormCompiler& c, DatumId place) {
 /// which order the arguments are computed.
 void change_part(FormCompiler& c, DatumId form, std::string_view macro,
                  std::vector<DatumId> arguments) {
-  c.code.code().gaps.push_back({"changes of shared lists", form, GapKind::kMeaning});
+  const auto place = arguments[0];
+  if (!is_cell_place(c, place)) {
+    c.code.code().gaps.push_back({"changes of shared lists", form, GapKind::kMeaning});
+  }
   arguments.insert(arguments.begin(), symbol_at(c, macro, form));
   c.compile(list_at(c, std::move(arguments), form));
 }
@@ -82,6 +146,10 @@ void form_setf(FormCompiler& c, DatumId form, FormItems items) {
   for (std::size_t i = 1; i + 1 < items.size(); i += 2) {
     if (i > 1) {
       c.code.drop(form);
+    }
+    if (is_cell_place(c, items[i])) {
+      set_cell(c, form, items[i], items[i + 1]);
+      continue;
     }
     if (is_part(c, items[i])) {
       change_part(c, form, "%set-place", {items[i], items[i + 1]});
@@ -97,7 +165,7 @@ void form_incf(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() < 2 || items.size() > 3) {
     return c.refuse(form, "expected a variable and perhaps a step");
   }
-  if (is_part(c, items[1])) {
+  if (is_part(c, items[1]) || is_cell_place(c, items[1])) {
     const auto one = c.data.add_number(Number(1), c.data.source(form));
     const auto step = items.size() == 3 ? items[2] : one;
     const auto sign = symbol_at(c, c.form_name(form) == "decf" ? "-" : "+", form);
@@ -129,7 +197,7 @@ void form_push(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() != 3) {
     return c.refuse(form, "expected a value and a variable");
   }
-  if (is_part(c, items[2])) {
+  if (is_part(c, items[2]) || is_cell_place(c, items[2])) {
     const auto joins = symbol_at(c, c.form_name(form) == "push" ? "cons" : "adjoin", form);
     return change_part(c, form, "%push-place", {items[2], joins, items[1]});
   }
@@ -145,7 +213,7 @@ void form_push(FormCompiler& c, DatumId form, FormItems items) {
 /// (pop variable) is the first element, which the variable loses.
 void form_pop(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() != 2) return c.refuse(form, "expected a variable");
-  if (is_part(c, items[1])) {
+  if (is_part(c, items[1]) || is_cell_place(c, items[1])) {
     return change_part(c, form, "%pop-place", {items[1]});
   }
   const auto* target = assignable(c, form, items[1]);

@@ -18,6 +18,11 @@ void form_progn(FormCompiler& c, DatumId /*form*/, FormItems items) {
   c.compile_body(items.subspan(1));
 }
 
+/// (locally declaration... form...)
+void form_locally(FormCompiler& c, DatumId /*form*/, FormItems items) {
+  c.compile_body(c.skip_declarations(items.subspan(1)));
+}
+
 /// (eval-when (situation...) form...): there is only one time.
 void form_eval_when(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() < 2) return c.refuse(form, "expected situations and forms");
@@ -73,6 +78,26 @@ void form_par(FormCompiler& c, DatumId form, FormItems items) {
   }
 }
 
+/// (try-all form...): the value of the first branch that has one; fails if all have failed.
+void form_try_all(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 2) return c.refuse(form, "without branches it waits for nothing and fails");
+  if (items.size() > 2 && c.interleave) {
+    branches_by_turns(c, form, items.subspan(1), true);
+    c.code.code().pars.back().tries = true;
+    return;
+  }
+  if (items.size() > 2) in_order(c, form);
+  // In written order the others begin when the first has failed.
+  std::vector<DatumId> parts = {
+      c.data.add_named(DatumKind::kSymbol, "try-in-order", "", c.data.source(form))};
+  for (const auto branch : items.subspan(1)) {
+    const DatumId task[] = {
+        c.data.add_named(DatumKind::kSymbol, "top-level", "", c.data.source(branch)), branch};
+    parts.push_back(c.data.add_list(task, c.data.source(branch)));
+  }
+  c.compile(c.data.add_list(parts, c.data.source(form)));
+}
+
 /// In written order the first branch ends before the others have performed anything. They are
 /// checked all the same.
 void form_pursue(FormCompiler& c, DatumId form, FormItems items) {
@@ -97,6 +122,27 @@ void form_sleep(FormCompiler& c, DatumId form, FormItems /*items*/) {
   if (!c.interleave) return c.nil(form);
   c.code.emit(PlanOp::kSleep, 0, 0, form);
   c.code.adjust(1);
+}
+
+/// (wait-for fluent [:timeout seconds]): without turns of branches nothing changes meanwhile.
+void form_wait_for(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 2 || items.size() % 2 != 0) {
+    return c.refuse(form, "expected a fluent and keywords");
+  }
+  if (!c.interleave) {
+    c.error(codes::kReactiveForm, form, c.form_name(form))
+        .note("with --par=interleave branches of `par` and `pursue` wait for fluents");
+    return c.nil(form);
+  }
+  // The real one may also wake up between two changes that are one step here.
+  c.code.code().gaps.push_back({"values of fluents that last for no turn", form, GapKind::kOrder});
+  bool limited = false;
+  for (std::size_t i = 2; i + 1 < items.size(); i += 2) {
+    limited = limited || (c.data.is_keyword(items[i]) && c.data.name(items[i]) == "timeout");
+  }
+  c.compile(items[1]);
+  c.code.emit(PlanOp::kWait, limited ? 1 : 0, 0, form);
+  if (limited) c.code.builtin("value", 1, form);
 }
 
 void form_if(FormCompiler& c, DatumId form, FormItems items) {
@@ -386,6 +432,7 @@ void form_holds(FormCompiler& c, DatumId form, FormItems items) {
 
 std::span<const FormEntry> control_forms() {
   static constexpr FormEntry kForms[] = {
+      {"locally", form_locally},
       {"progn", form_progn},
       {"seq", form_progn},
       {"top-level", form_top_level},
@@ -395,6 +442,8 @@ std::span<const FormEntry> control_forms() {
       {"eval-when", form_eval_when},
       {"par", form_par},
       {"pursue", form_pursue},
+      {"wait-for", form_wait_for},
+      {"try-all", form_try_all},
       {"sleep", form_sleep},
       {"if", form_if},
       {"when", form_when},

@@ -371,6 +371,14 @@ void form_handler_case(FormCompiler& c, DatumId form, FormItems items) {
   for (const auto jump : to_end) c.code.patch_jump(jump);
 }
 
+/// Does the clean-up neither act nor look at anything, as one of log entries and events only?
+bool does_nothing(const PlanUnit& unit) {
+  return std::all_of(unit.code.begin(), unit.code.end(), [](const PlanInstruction& instruction) {
+    return instruction.op == PlanOp::kConstant || instruction.op == PlanOp::kPop ||
+           instruction.op == PlanOp::kEndCleanup;
+  });
+}
+
 void form_unwind_protect(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() < 2) {
     return c.refuse(form, "expected a form and clean-up forms");
@@ -379,6 +387,7 @@ void form_unwind_protect(FormCompiler& c, DatumId form, FormItems items) {
   c.code.enter_unit(unit);
   c.compile_body(items.subspan(2));
   c.code.leave_unit(PlanOp::kEndCleanup, form);
+  if (does_nothing(c.code.code().units[unit])) return c.compile(items[1]);
   c.code.push_cleanup(unit, form);
   c.compile(items[1]);
   c.code.pop_guard(form);

@@ -26,33 +26,24 @@ struct Hint {
   std::string_view text;
 };
 
-constexpr std::string_view kNoFluents =
-    "there are no fluents; ask the model with `(holds '(fluent argument...))` where it matters";
-
 /// Reactive forms and how to write it instead.
 constexpr Hint kReactive[] = {
-    {"try-all", "use `try-in-order`, which tries one branch after the other"},
     {"partial-order", "write the steps in one of the orders, in a `seq`"},
-    {"whenever", "ask `(holds '(fluent argument...))` after the performs that can change it"},
-    {"wait-for", "ask `(holds '(fluent argument...))`; nothing changes but by performs"},
     {"with-policy", "write the body alone, in a `progn`, and check the policy after its performs"},
     {"with-policies", "write the body alone, in a `progn`, and check them after its performs"},
     {"with-task-suspended", "write the body alone, in a `progn`"},
     {"with-task", "write the body alone, in a `progn`"},
-    {"make-fluent", kNoFluents},
-    {"fl-funcall", kNoFluents},
-    {"fl-and", kNoFluents},
-    {"fl-or", kNoFluents},
-    {"fl-not", kNoFluents},
-    {"fl-eq", kNoFluents},
-    {"pulsed", kNoFluents},
+    {"fl-funcall", "write the function on fluents: `fl-and`, `fl-or`, `fl-not`, `fl<` ..."},
+    {"fl-pulsed", "wait for the fluent's value"},
+    {"pulsed", "wait for the fluent's value"},
 };
 
 constexpr Hint kRejected[] = {
-    {"defstruct", "there are no structures"},
-    {"defclass", "there are no classes"},
-    {"defmethod", "there are no generic functions; write a function"},
-    {"defgeneric", "there are no generic functions; write a function"},
+    {"defstruct", "structures are defined at top level"},
+    {"defclass", "classes are defined at top level"},
+    {"defmethod", "methods are defined at top level"},
+    {"defgeneric", "generic functions are defined at top level"},
+    {"call-next-method", "write the other method's body out"},
     {"catch", "use `block`"},
     {"throw", "use `return-from`"},
     {"unquote", "a comma needs a backquote around it"},
@@ -142,30 +133,6 @@ void FormCompiler::compile_datum(DatumId form) {
   }
 }
 
-void FormCompiler::compile_symbol(DatumId symbol) {
-  const auto& name = data.name(symbol);
-  if (name == "nil" || name == "t") return code.constant(datum_value(symbol), symbol);
-  if (const auto* binding = code.lookup(BindingKind::kVariable, name)) {
-    return code.load(*binding, symbol);
-  }
-  if (const auto global = defined.globals.find(data.key(symbol)); global != defined.globals.end()) {
-    code.emit(PlanOp::kLoadGlobal, global->second, 0, symbol);
-    return code.adjust(1);
-  }
-  if (const auto known = robot_global(name, values)) return code.constant(*known, symbol);
-  std::vector<std::string> names;
-  for (const auto& binding : code.scope()) {
-    if (binding.kind == BindingKind::kVariable) names.push_back(binding.name);
-  }
-  for (const auto& [global, index] : defined.globals) names.push_back(global);
-  auto report = error(codes::kUnboundPlanVariable, symbol, name);
-  note_other_package(report, symbol);
-  if (const auto near = base::nearest_name(name, names)) {
-    report.fix(fmt::format("replace `{}` with `{}`", name, *near));
-  }
-  nil(symbol);
-}
-
 void FormCompiler::compile_list(DatumId form) {
   const auto items = data.children(form);
   if (items.empty()) return nil(form);
@@ -195,12 +162,12 @@ void FormCompiler::compile_list(DatumId form) {
     code.set_height(height + 1);
     return;
   }
-  if (const auto callee = find_callee(*this, items.front()))
-    return compile_call(*this, form, *head, *callee, items.subspan(1));
   if (const auto reader = defined.readers.find(data.key(items.front()));
       reader != defined.readers.end() && items.size() == 2) {
     return compile_reader(*this, form, reader->second, items[1]);
   }
+  if (const auto callee = find_callee(*this, items.front()))
+    return compile_call(*this, form, *head, *callee, items.subspan(1));
   if (is_ignored_call(data.package(items.front()), *head)) {
     check_no_perform(form);
     return nil(form);

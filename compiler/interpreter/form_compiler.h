@@ -85,6 +85,8 @@ struct PlanDefinitions {
   std::map<std::uint32_t, PlanMacro> local_macros;    // by unit
   std::map<std::uint32_t, PlanUnitSource> unwritten;  // by unit
   std::map<std::string, std::uint32_t, std::less<>> globals;
+  std::map<std::string, std::string, std::less<>> accessors;  // of structures: their slots
+  std::map<std::uint32_t, LexicalBinding> set_globals;        // those that the plan sets
   std::map<std::string, ConditionSlot, std::less<>> readers;  // of conditions, by key
   std::set<std::string, std::less<>> read_initargs;           // of all their slots
   std::map<std::uint32_t, RetryCounter> counters;  // those met so far, by the name's serial
@@ -161,6 +163,7 @@ class FormCompiler {
   std::size_t position = 0;  // of the form at top level that is compiled
   bool resetting = false;    // in the number of a counter that is reset
   std::size_t repeated = 0;  // data compiled again, for counters that are reset
+  std::optional<base::FileId> entry_file;  // what the plan begins with: its variables are inputs
 
  private:
   base::DiagnosticBuilder note_calls(base::DiagnosticBuilder report, DatumId at) const;
@@ -168,6 +171,9 @@ class FormCompiler {
   void note_other_package(base::DiagnosticBuilder& report, DatumId symbol) const;
   void compile_datum(DatumId form);
   void compile_symbol(DatumId symbol);
+  std::optional<DatumId> literal_of(std::uint32_t global) const;
+  bool is_input(DatumId symbol) const;
+  void compile_input(DatumId symbol);
   void compile_list(DatumId form);
 
   void compile_expansion(DatumId form, const PlanMacro& macro);

@@ -237,7 +237,8 @@ void call_prepared(FormCompiler& c, const FunctionArgument& function, std::uint3
 namespace {
 
 bool gives_values(std::string_view builtin) {
-  return builtin == "floor" || builtin == "ceiling" || builtin == "truncate" || builtin == "round";
+  return builtin == "floor" || builtin == "ceiling" || builtin == "truncate" ||
+         builtin == "round" || builtin == "gethash";
 }
 
 /// `pushed` values are on the stack, one for each parameter.

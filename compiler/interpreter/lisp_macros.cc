@@ -210,6 +210,8 @@ std::optional<DatumId> MacroExpander::datum_of(ValueId id, const base::SourceRan
     case ValueKind::kUnknown:
     case ValueKind::kFunction:
     case ValueKind::kValues:
+    case ValueKind::kCell:
+    case ValueKind::kNetwork:
       break;
   }
   trouble_ = fmt::format("its expansion contains {}, which is no code", c_.values.print(id));

@@ -187,6 +187,12 @@ class LoopParser {
       ++i_;
       return take_form(clause.form) && (!take_word("by") || take_form(clause.step));
     }
+    if (take_word("across")) {
+      clause.kind = LoopKind::kIn;
+      clause.list = "%elements";
+      return take_form(clause.form);
+    }
+    if (take_word("being")) return parse_table(clause);
     if (take_word("=")) {
       clause.kind = LoopKind::kEquals;
       return take_form(clause.form) && (!take_word("then") || take_form(clause.then));
@@ -194,6 +200,27 @@ class LoopParser {
     clause.kind = LoopKind::kRange;
     if (data_.is_list(*clause.variable)) return fail("a pattern counts nothing");
     return parse_range(clause);
+  }
+
+  /// being the hash-keys of table [using (hash-value v)], and the other way round
+  bool parse_table(LoopClause& clause) {
+    clause.kind = LoopKind::kIn;
+    if (!take_word("the")) take_word("each");
+    clause.values = word().starts_with("hash-value");
+    if (!clause.values && !word().starts_with("hash-key")) {
+      return fail(fmt::format("this kind of `for {}`", print_datum(data_, *clause.variable)));
+    }
+    ++i_;
+    if (!take_word("of")) take_word("in");
+    if (!take_form(clause.form)) return false;
+    clause.list = clause.values ? "hash-table-values" : "hash-table-keys";
+    if (!take_word("using")) return true;
+    const auto other = i_ < items_.size() ? data_.children(items_[i_]) : std::span<const DatumId>();
+    if (other.size() != 2) return fail("`using` needs (hash-value name)");
+    clause.second = other[1];
+    clause.list = "hash-table-alist";
+    ++i_;
+    return true;
   }
 
   bool parse_range(LoopClause& clause) {

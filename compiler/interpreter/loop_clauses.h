@@ -43,6 +43,9 @@ struct LoopClause {
   std::optional<DatumId> limit;     // kRange; none: for ever
   std::optional<DatumId> step;      // kRange; kIn, kOn: the function to the rest
   std::optional<DatumId> then;      // kEquals
+  std::optional<DatumId> second;    // kIn over a table: the variable behind `using`
+  std::string_view list = {};       // kIn: the function that makes a list of the form's value
+  bool values = false;              // kIn over a table: the first variable is the value
   std::string into;                 // variable to collect into
   std::optional<DatumId> result;    // the same, as written
   bool down = false;                // kRange: counts down

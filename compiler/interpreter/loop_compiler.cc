@@ -169,8 +169,10 @@ class LoopCompiler {
       case LoopKind::kIn:
       case LoopKind::kOn:
         c_.compile(*clause.form);
+        if (!clause.list.empty()) c_.code.builtin(clause.list, 1, form_);
         if (clause.kind == LoopKind::kIn) c_.code.emit(PlanOp::kExpectList, 0, 0, form_);
         if (clause.step) steps_.emplace(&clause, prepare_function(c_, form_, *clause.step));
+        if (clause.second) push_names(*clause.second);
         return push_names(*clause.variable);
       case LoopKind::kRange:
         push_form(clause.form, 0);
@@ -226,7 +228,15 @@ class LoopCompiler {
       end_if_nil();
       c_.code.load(place, form_);
       if (clause.kind == LoopKind::kIn) c_.code.builtin("car", 1, form_);
-      assign(*clause.variable);
+      if (clause.second) {
+        c_.code.load(c_.code.height() - 1, form_);
+        c_.code.builtin(clause.values ? "cdr" : "car", 1, form_);
+        assign(*clause.variable);
+        c_.code.builtin(clause.values ? "car" : "cdr", 1, form_);
+        assign(*clause.second);
+      } else {
+        assign(*clause.variable);
+      }
       const auto by = steps_.find(&clause);
       if (by != steps_.end()) push_prepared(c_, by->second, form_);
       c_.code.load(place, form_);

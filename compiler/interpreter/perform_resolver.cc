@@ -162,6 +162,8 @@ Result<FormulaTree> PerformResolver::constant(ValueId id, std::string_view what,
     case ValueKind::kNotGiven:
     case ValueKind::kFunction:
     case ValueKind::kValues:
+    case ValueKind::kCell:
+    case ValueKind::kNetwork:
       return wrong(values_.print(id));
     case ValueKind::kCons:
     case ValueKind::kVector:
@@ -459,6 +461,8 @@ void PerformResolver::flatten(const std::string& name, ValueId id, PlanArguments
     case ValueKind::kNotGiven:
     case ValueKind::kFunction:
     case ValueKind::kValues:
+    case ValueKind::kCell:
+    case ValueKind::kNetwork:
     case ValueKind::kNil:
     case ValueKind::kQuaternion:
     case ValueKind::kPose:

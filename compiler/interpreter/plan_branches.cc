@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/plan_machine.h"
 
 namespace parallax::compiler {
@@ -159,17 +160,6 @@ void find_endings(const PlanPar& par, PlanMachine::BranchPath& path,
   }
 }
 
-void find_waiting(const PlanPar& par, PlanMachine::BranchPath& path,
-                  std::vector<PlanMachine::BranchPath>& out) {
-  for (std::size_t i = 0; i < par.branches.size(); ++i) {
-    const auto& branch = par.branches[i];
-    path.push_back(i);
-    if (branch.turn) out.push_back(path);
-    if (!branch.pars.empty()) find_waiting(branch.pars.front(), path, out);
-    path.pop_back();
-  }
-}
-
 }  // namespace
 
 namespace {
@@ -185,6 +175,25 @@ bool resume_performs(const PlanState& state, const PlanMachine::BranchPath& path
 
 }  // namespace
 
+/// A branch that waits for a fluent has a turn while that is not nil.
+bool PlanMachine::has_turn(const PlanState& state, const PlanTurn& turn) {
+  if (!turn.until) return true;
+  const auto value = fluent_value(state, *turn.until);
+  const auto* known = std::get_if<ValueId>(&value);
+  return known == nullptr || !values_.is_nil(*known);  // an error is reported when it is run
+}
+
+void PlanMachine::find_waiting(const PlanState& state, const PlanPar& par, BranchPath& path,
+                               std::vector<BranchPath>& out) {
+  for (std::size_t i = 0; i < par.branches.size(); ++i) {
+    const auto& branch = par.branches[i];
+    path.push_back(i);
+    if (branch.turn && has_turn(state, *branch.turn)) out.push_back(path);
+    if (!branch.pars.empty()) find_waiting(state, branch.pars.front(), path, out);
+    path.pop_back();
+  }
+}
+
 PlanMachine::Step PlanMachine::start_par(PlanState& state, const PlanInstruction& instruction) {
   PlanPar par;
   par.frames = static_cast<std::uint32_t>(state.frames.size());
@@ -192,6 +201,7 @@ PlanMachine::Step PlanMachine::start_par(PlanState& state, const PlanInstruction
   par.height = static_cast<std::uint32_t>(state.stack.size());
   par.form = instruction.source;
   par.exit = code_.pars[instruction.a].exit;
+  par.tries = code_.pars[instruction.a].tries;
   for (const auto unit : code_.pars[instruction.a].units) {
     PlanBranchState branch;
     PlanFrame frame;
@@ -227,7 +237,12 @@ PlanMachine::Step PlanMachine::fail_branch(PlanState& state, ValueId failure) {
   auto& par = state.pars.back();
   par.branches[par.active].done = true;
   par.branches[par.active].fresh = false;
-  if (!par.failure) par.failure = failure;
+  const auto is_done = [](const PlanBranchState& branch) { return branch.done; };
+  if (!par.tries) {
+    if (!par.failure) par.failure = failure;
+  } else if (!par.value && std::all_of(par.branches.begin(), par.branches.end(), is_done)) {
+    par.failure = values_.failure("composite-failure");
+  }
   state.frames.resize(par.frames);
   state.guards.resize(par.guards);
   state.stack.resize(par.height);
@@ -251,7 +266,7 @@ PlanMachine::Step PlanMachine::next_branch(PlanState& state) {
     if (par.failure || par.value) {
       std::vector<BranchPath> waiting;
       BranchPath path;
-      find_waiting(par, path, waiting);
+      find_waiting(state, par, path, waiting);
       const auto ends = ends_of(par);
       if (waiting.empty() && ends.size() == 1) return evaporate(state, ends.front());
     } else if (all_done) {
@@ -261,7 +276,7 @@ PlanMachine::Step PlanMachine::next_branch(PlanState& state) {
       return {};
     }
     if (state.pars.size() == 1) {
-      const auto open = PlanMachine::waiting(state);
+      const auto open = waiting(state);
       const bool alone = open.size() == 1 && PlanMachine::endings(state).empty();
       if (!alone || resume_performs(state, open.front())) return StopTurn{};
       resume(state, open.front());  // nobody else has a turn
@@ -290,13 +305,16 @@ std::optional<PlanStop> PlanMachine::wait(PlanState& state, const PlanTurn& turn
 /// Does the instruction neither see nor change anything outside of the running branch? Built-ins
 /// fail only where designators are equated.
 bool PlanMachine::is_own(const PlanState& state, const PlanInstruction& instruction) const {
-  static constexpr PlanOp kOwn[] = {
-      PlanOp::kConstant, PlanOp::kPop,       PlanOp::kSqueeze, PlanOp::kJump, PlanOp::kJumpIfNil,
-      PlanOp::kCall,     PlanOp::kCallLocal, PlanOp::kReturn,  PlanOp::kTick, PlanOp::kLoadGlobal};
+  static constexpr PlanOp kOwn[] = {PlanOp::kConstant,  PlanOp::kPop,       PlanOp::kSqueeze,
+                                    PlanOp::kJump,      PlanOp::kJumpIfNil, PlanOp::kCall,
+                                    PlanOp::kCallLocal, PlanOp::kReturn,    PlanOp::kTick};
   if (instruction.op == PlanOp::kLoad || instruction.op == PlanOp::kStore) {
     return place(state, instruction) >= state.pars.back().height;
   }
-  if (instruction.op == PlanOp::kBuiltin) return !code_.identities;
+  if (instruction.op == PlanOp::kBuiltin) {
+    return !code_.identities && state.links.heap.cells.empty();
+  }
+  if (instruction.op == PlanOp::kLoadGlobal) return !code_.sets_globals;
   return std::find(std::begin(kOwn), std::end(kOwn), instruction.op) != std::end(kOwn);
 }
 
@@ -345,10 +363,42 @@ PlanMachine::Step PlanMachine::sleep(PlanState& state, DatumId form) {
   return wait(state, {values_.nil(), form, true});
 }
 
+/// Waits until the fluent is not nil: the branch looks again whenever it has a turn. Outside of
+/// branches nobody can change it. With a time limit it waits for one turn, and the fluent stays.
+PlanMachine::Step PlanMachine::wait_for(PlanState& state, const PlanInstruction& instruction) {
+  const auto fluent = state.stack.back();
+  const auto value = fluent_value(state, fluent);
+  if (const auto* failure = std::get_if<BuiltinFailure>(&value)) {
+    return error(codes::kPlanValue, instruction, failure->text);
+  }
+  const auto now = std::get<ValueId>(value);
+  if (instruction.a == 1) {
+    if (!values_.is_nil(now) || state.pars.empty()) return {};
+    return wait(state, {values_.nil(), instruction.source, true});
+  }
+  if (!values_.is_nil(now)) {
+    state.stack.back() = now;
+    return {};
+  }
+  if (state.pars.empty()) return StopBound{"wait-for", instruction.source};
+  --state.frames.back().pc;
+  return wait(state, {values_.nil(), instruction.source, true, fluent});
+}
+
+std::variant<ValueId, BuiltinFailure> PlanMachine::fluent_value(const PlanState& state,
+                                                                ValueId fluent) {
+  auto links = state.links;
+  auto result = call_builtin(*find_builtin("value"), std::span(&fluent, 1), code_.classes,
+                             limits_.location_samples, links, values_);
+  if (const auto* value = std::get_if<ValueId>(&result)) return *value;
+  if (const auto* failure = std::get_if<BuiltinFailure>(&result)) return *failure;
+  return BuiltinFailure{BuiltinError::kValue, "a fluent that only the model knows"};
+}
+
 std::vector<PlanMachine::BranchPath> PlanMachine::waiting(const PlanState& state) {
   std::vector<BranchPath> out;
   BranchPath path;
-  find_waiting(state.pars.front(), path, out);
+  find_waiting(state, state.pars.front(), path, out);
   return out;
 }
 

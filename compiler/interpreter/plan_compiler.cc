@@ -15,6 +15,7 @@
 #include "compiler/interpreter/function_calls.h"
 #include "compiler/interpreter/lisp_macros.h"
 #include "compiler/interpreter/plan_reach.h"
+#include "compiler/interpreter/plan_structures.h"
 #include "compiler/lisp/lisp_library.h"
 
 namespace parallax::compiler {
@@ -30,8 +31,10 @@ bool defines_global(std::string_view head) {
 
 bool is_housekeeping(std::string_view head) {
   return head == "in-package" || head == "defpackage" || head == "declaim" || head == "declare" ||
-         head == "proclaim" || head == "export" || head == "def-fact-group";
+         head == "proclaim" || head == "export" || head == "def-fact-group" || head == "defgeneric";
 }
+
+bool defines_structure(std::string_view head) { return head == "defstruct" || head == "defclass"; }
 
 bool is_definition(std::string_view head) {
   return defines_function(head) || defines_global(head) || head == "defmacro";
@@ -49,6 +52,7 @@ class PlanCompiler {
         c_(text, values, sink, interleave),
         reach_(text.data) {
     c_.code.code().classes = FailureClasses(binding.failures);
+    c_.entry_file = entry_file;
   }
 
   base::Result<PlanCode> compile(const std::optional<std::string>& entry) {
@@ -56,6 +60,7 @@ class PlanCompiler {
       return sink_.error(codes::kNoPlanEntry, base::SourceRange{text_.file, 0, 0},
                          "the file has no forms");
     }
+    if (!check_entry_call()) return sink_.already_reported();
     for (const auto form : text_.forms) flatten(form);
     note_designator_use();
     find_reached(entry);
@@ -73,6 +78,23 @@ class PlanCompiler {
   }
 
  private:
+  /// The user gives one call as the plan's beginning.
+  bool check_entry_call() {
+    if (!entry_file_) return true;
+    std::vector<DatumId> written;
+    for (const auto form : text_.forms) {
+      if (c_.data.source(form).file == *entry_file_) written.push_back(form);
+    }
+    if (written.size() == 1 && !c_.data.children(written.front()).empty()) return true;
+    const auto place = written.empty()       ? base::SourceRange{*entry_file_, 0, 0}
+                       : written.size() == 1 ? c_.data.source(written.front())
+                                             : c_.data.source(written[1]);
+    (void)sink_.error(codes::kNoPlanEntry, place,
+                      written.size() > 1 ? "the entry is one call, and this is another one"
+                                         : "the entry is empty: give a function or a call of it");
+    return false;
+  }
+
   /// Which names the plan has, whether it tells designators apart, and whether it asks what they
   /// say.
   void note_designator_use() {
@@ -117,9 +139,19 @@ class PlanCompiler {
         if (defines_function(head)) last = c_.data.key(items[1]);
       } else if (head == "define-condition") {
         reach_.add_slots(form);
+      } else if (defines_structure(head)) {
+        read_structure(form);
+      } else if (head == "defmethod" && items.size() > 1 && c_.data.is_symbol(items[1])) {
+        methods_[c_.data.key(items[1])].push_back(form);
       } else if (!is_housekeeping(head)) {
         others.push_back(form);
       }
+    }
+    for (const auto& [name, methods] : methods_) {
+      DatumId function;
+      auto error = read_methods(c_.data, methods, structures_, function);
+      if (error) structure_errors_.emplace(methods.front(), *std::move(error));
+      if (!error) reach_.define(name, generics_.emplace(name, function).first->second);
     }
     const auto expands = [&](DatumId form) {
       return c_.data.head(form) && macros.contains(c_.data.key(c_.data.children(form)[0]));
@@ -134,6 +166,49 @@ class PlanCompiler {
       if (bound.plan) names.push_back(entry_key(*bound.plan));
     }
     reach_.find(others, names);
+  }
+
+  /// Its functions count as others do: where something that is reached names them.
+  void read_structure(DatumId form) {
+    PlanStructure structure;
+    if (auto error = compiler::read_structure(c_.data, form, structures_, structure)) {
+      structure_errors_.emplace(form, *std::move(error));
+    }
+    for (const auto function : structure.functions) {
+      reach_.define(c_.data.name(c_.data.children(function)[1]), function);
+      reach_.define(structure.name, function);  // (make-instance 'class ...) names the class
+    }
+    structures_.push_back(std::move(structure));
+    structure_at_.emplace(form, structures_.size() - 1);
+  }
+
+  void define_structure(DatumId form) {
+    if (!structure_at_.contains(form)) read_structure(form);
+    const auto& structure = structures_[structure_at_.at(form)];
+    const bool reached =
+        std::any_of(structure.functions.begin(), structure.functions.end(), [&](DatumId function) {
+          return reach_.contains(c_.data.name(c_.data.children(function)[1]));
+        });
+    if (!reached && !reach_.contains(structure.name)) return;
+    if (const auto error = structure_errors_.find(form); error != structure_errors_.end()) {
+      return c_.unsupported(error->second.at, error->second.text);
+    }
+    c_.code.code().classes.add_structure(structure.name);
+    for (const auto function : structure.functions) {
+      const auto items = c_.data.children(function);
+      const auto name = c_.data.name(items[1]);
+      if (!c_.defined.functions.contains(name)) add_function(function, name, items);
+    }
+    for (const auto& [name, slot] : structure.accessors) c_.defined.accessors.emplace(name, slot);
+  }
+
+  /// All methods of a name are one function, of the first one's place.
+  void define_method(DatumId form, const std::string& name) {
+    if (!reach_.contains(name) || c_.defined.functions.contains(name)) return;
+    if (const auto generic = generics_.find(name); generic != generics_.end()) {
+      return add_function(generic->second, name, c_.data.children(generic->second));
+    }
+    if (structure_errors_.contains(form)) c_.unsupported(form, structure_errors_.at(form).text);
   }
 
   bool define_name(DatumId form, DatumId name) {
@@ -255,6 +330,10 @@ class PlanCompiler {
       define_macro(form, items);
     } else if (defines_global(head)) {
       define_global(form, items);
+    } else if (defines_structure(head)) {
+      define_structure(form);
+    } else if (head == "defmethod" && named) {
+      define_method(form, c_.data.key(items[1]));
     } else {
       return is_housekeeping(head) || head == "define-condition";
     }
@@ -401,6 +480,11 @@ class PlanCompiler {
   std::vector<Positioned> others_;      // no definitions, but perhaps calls of macros that define
   std::vector<Positioned> bare_forms_;  // forms to be run
   bool missing_ = false;                // of them, an expansion
+  std::vector<PlanStructure> structures_;
+  std::map<std::string, std::vector<DatumId>, std::less<>> methods_;  // by name
+  std::map<std::string, DatumId, std::less<>> generics_;  // the function of all methods of a name
+  std::map<DatumId, std::size_t> structure_at_;
+  std::map<DatumId, StructureError> structure_errors_;
   std::set<std::string, std::less<>> named_;  // all names, but those in definitions of conditions
 };
 

@@ -62,6 +62,7 @@ enum class PlanOp : std::uint8_t {
   kPar,           // start the branches of table a, which take turns
   kEndBranch,     // a branch is over, with the top as its value
   kSleep,         // push nil; a branch of a `par` waits here for its turn
+  kWait,          // pop a fluent, push its value; a branch waits for it, with a = 1 not for ever
   kTick,          // count variable a up; cut here beyond the loop limit
   kDone,          // the plan is over
 };
@@ -132,6 +133,7 @@ struct HandlerClause {
 struct ParBranches {
   std::vector<std::uint32_t> units;
   std::optional<std::uint32_t> exit;  // `pursue`: where the first value goes on
+  bool tries = false;                 // `try-all`
 };
 
 /// A place at which executions of the real plan may differ from those of the code.
@@ -158,10 +160,12 @@ struct PlanCode {
   std::vector<PlanGlobal> globals;
   std::vector<std::string> strings;
   std::vector<CodeGap> gaps;
+  std::vector<std::string> inputs;  // free variables of the entry: the registers from 0 on
   FailureClasses classes;
   std::map<std::string, std::uint32_t, std::less<>> functions;     // the plan's own: their units
   std::map<std::string, std::string, std::less<>> function_names;  // by `package::name`: that name
   bool identities = false;       // designators are equated: each is a thing of its own
+  bool sets_globals = false;     // some form sets a global that nothing around it rebinds
   bool describes = false;        // properties are asked for: found objects keep their description
   bool multiple_values = false;  // some form gives several values
 };

@@ -49,6 +49,29 @@ void drop_dead_links(PlanState& state, std::span<const ValueId> more, const Valu
   state.links.chains = std::move(out);
 }
 
+void drop_dead_cells(PlanState& state, std::span<const ValueId> more, const ValueStore& values) {
+  auto& heap = state.links.heap;
+  // The caller of a computation may refer to more than the computation's state shows.
+  if (heap.cells.empty() || state.links.floor > 1) return;
+  auto cells = std::exchange(heap.cells, {});
+  std::set<std::uint32_t> alive;
+  const auto note = [&](ValueId id) {
+    const auto& in_it = values[id].identities;
+    const auto before = alive.size();
+    alive.insert(in_it.begin(), in_it.end());
+    return alive.size() > before;
+  };
+  for_each_value(state, note);
+  for (const auto value : more) note(value);
+  const auto lives = [&](std::uint32_t cell) { return cell <= heap.kept || alive.contains(cell); };
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& [cell, content] : cells) changed = (lives(cell) && note(content)) || changed;
+  }
+  std::erase_if(cells, [&](const auto& cell) { return !lives(cell.first); });
+  heap.cells = std::move(cells);
+}
+
 void PlanMachine::report(const BuiltinFailure& failure, std::uint32_t builtin, DatumId form) {
   const auto name = plan_builtins()[builtin].name;
   const bool own = data_.in_library(form) || name.front() == '%';
@@ -81,9 +104,11 @@ PlanState PlanMachine::computation(std::uint32_t unit, const std::vector<ValueId
 
 void PlanMachine::refresh_links(PlanState& state, std::span<const ValueId> more) const {
   state.links.identities = code_.identities;
-  if (!code_.identities) return;
+  if (!code_.identities && state.links.heap.cells.empty()) return;
   drop_dead_links(state, more, values_);
-  std::uint32_t last = 0;
+  drop_dead_cells(state, more, values_);
+  auto last = state.links.heap.kept;
+  if (!state.links.heap.cells.empty()) last = std::max(last, state.links.heap.cells.back().first);
   const auto note = [&](ValueId value) {
     const auto& identities = values_[value].identities;
     if (!identities.empty()) last = std::max(last, identities.back());

@@ -191,6 +191,7 @@ void PlanMachine::take_primary(PlanState& state, const PlanInstruction& instruct
     case PlanOp::kExpectList:
     case PlanOp::kSpreadValues:
     case PlanOp::kStamp:
+    case PlanOp::kWait:
       count = 1;
       break;
     case PlanOp::kConstant:

@@ -58,6 +58,13 @@ class KeyWriter {
       number(chain.size());
       for (const auto member : chain) number(member.index());
     }
+    for (const auto* entries : {&links.heap.cells, &links.heap.globals}) {
+      if (!entries->empty()) number(entries->size());
+      for (const auto& [key_of_it, value] : *entries) {
+        number(key_of_it);
+        number(value.index());
+      }
+    }
   }
 
   void sleep(std::uint32_t slept, std::uint32_t asleep) { key.insert(key.end(), {slept, asleep}); }
@@ -126,6 +133,8 @@ void for_each_value(const PlanState& state, const std::function<void(ValueId)>& 
   for (const auto& chain : state.links.chains) {
     for (const auto member : chain) visit(member);
   }
+  for (const auto& [cell, content] : state.links.heap.cells) visit(content);
+  for (const auto& [global, value] : state.links.heap.globals) visit(value);
 }
 
 std::vector<std::uint32_t> state_key(const PlanState& state, const ValueStore& values,
@@ -160,6 +169,8 @@ PlanState PlanMachine::start() const {
   PlanState state;
   state.frames.push_back({});
   state.frames.back().unit = code_.main;
+  state.links.heap = first_heap_;
+  if (first_heap_.kept > 0) state.links.next = first_heap_.kept + 1;
   return state;
 }
 
@@ -182,6 +193,8 @@ bool PlanMachine::run_definitions() {
     sink_.error(codes::kUnsupportedPlanForm, data_.source(bound->at), bound->form,
                 "the loop does not end, in the value of a global constant");
   }
+  first_heap_ = state.links.heap;
+  for (const auto& [cell, content] : first_heap_.cells) first_heap_.kept = cell;
   return std::holds_alternative<StopDone>(stop);
 }
 
@@ -318,6 +331,8 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
       stack.push_back(values_.nil());
       if (state.pars.empty()) return {};
       return sleep(state, instruction.source);
+    case PlanOp::kWait:
+      return wait_for(state, instruction);
     case PlanOp::kTick:
       return tick(state, instruction);
     case PlanOp::kDone:

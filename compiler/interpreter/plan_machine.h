@@ -63,11 +63,12 @@ struct PlanGuard {
   std::uint32_t height = 0;  // of the stack when it began
 };
 
-/// A perform, or a `sleep`, that a branch of a `par` waits at for its turn.
+/// A perform, a `sleep` or a `wait-for` that a branch of a `par` waits at for its turn.
 struct PlanTurn {
   ValueId designator;
   DatumId form;
   bool sleeps = false;
+  std::optional<ValueId> until = std::nullopt;  // it has a turn while this fluent is not nil
 };
 
 struct PlanPar;
@@ -95,6 +96,7 @@ struct PlanPar {
   std::uint32_t height = 0;
   std::size_t active = 0;             // the branch whose state is in place
   std::optional<std::uint32_t> exit;  // `pursue`: where it goes on with its value
+  bool tries = false;                 // `try-all`: it fails only when all branches have failed
   std::optional<ValueId> failure;
   std::optional<ValueId> value;  // `pursue` only; both are set if a failure came second
   DatumId form;
@@ -122,6 +124,9 @@ void for_each_value(const PlanState& state, const std::function<void(ValueId)>& 
 /// Forgets the links of designators that nothing else in the state, and nothing of `more`, refers
 /// to.
 void drop_dead_links(PlanState& state, std::span<const ValueId> more, const ValueStore& values);
+
+/// The same for cells.
+void drop_dead_cells(PlanState& state, std::span<const ValueId> more, const ValueStore& values);
 
 /// Equal for equal states. Without `counters`, states that differ only in how often an endless loop
 /// has run are equal: coming back to such a state is a cycle, not news.
@@ -203,7 +208,7 @@ class PlanMachine {
   std::optional<PlanStop> wait(PlanState& state, const PlanTurn& turn);
   /// Where branches wait: the way to each through nested `par`s, in written order.
   using BranchPath = std::vector<std::size_t>;
-  static std::vector<BranchPath> waiting(const PlanState& state);
+  std::vector<BranchPath> waiting(const PlanState& state);
   /// How a `par` that is decided may end now. The clean-ups of the branches that it ends run in
   /// tasks of their own, so a handler of its failure may decide before them or after.
   /// Without clean-ups: they come behind everything that is left of the plan.
@@ -284,6 +289,11 @@ class PlanMachine {
   Step store_special(PlanState& state, const PlanInstruction& instruction);
   std::optional<std::size_t> special(const PlanState& state, std::uint32_t global) const;
   Step sleep(PlanState& state, DatumId form);
+  Step wait_for(PlanState& state, const PlanInstruction& instruction);
+  std::variant<ValueId, BuiltinFailure> fluent_value(const PlanState& state, ValueId fluent);
+  bool has_turn(const PlanState& state, const PlanTurn& turn);
+  void find_waiting(const PlanState& state, const PlanPar& par, BranchPath& path,
+                    std::vector<BranchPath>& out);
   std::optional<DatumId> run_to_sleep(PlanState& state);
   bool is_own(const PlanState& state, const PlanInstruction& instruction) const;
   Step start_par(PlanState& state, const PlanInstruction& instruction);
@@ -306,6 +316,7 @@ class PlanMachine {
   ValueStore& values_;
   base::DiagnosticSink& sink_;
   std::vector<std::optional<ValueId>> globals_;
+  PlanHeap first_heap_;  // what the definitions of globals made
   std::int64_t steps_ = 0;
   std::vector<std::uint32_t> handlers_run_;
   std::vector<bool> handlers_met_;

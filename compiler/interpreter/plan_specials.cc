@@ -12,6 +12,11 @@ PlanMachine::Step PlanMachine::load_global(PlanState& state, const PlanInstructi
     state.stack.push_back(state.stack[*rebound]);
     return {};
   }
+  const auto set = instruction.b == 0 ? state.links.heap.global(instruction.a) : std::nullopt;
+  if (set) {
+    state.stack.push_back(*set);
+    return {};
+  }
   if (const auto value = instruction.a < globals_.size() ? globals_[instruction.a] : std::nullopt) {
     state.stack.push_back(*value);
     return {};
@@ -23,17 +28,14 @@ PlanMachine::Step PlanMachine::load_global(PlanState& state, const PlanInstructi
   return StopError{};
 }
 
-/// A function may be called where the binding that it sets is over, or in another task.
+/// Where nothing in this task has rebound it, the value that all tasks see is set.
 PlanMachine::Step PlanMachine::store_special(PlanState& state, const PlanInstruction& instruction) {
   if (const auto rebound = special(state, instruction.a)) {
     state.stack[*rebound] = state.stack.back();
     return {};
   }
-  const auto& global = code_.globals[instruction.a];
-  report(codes::kHeapWrite, instruction.source, name_at(instruction.source), global.name)
-      .note(data_.source(global.source),
-            "it is a global constant, defined here; nothing in this task rebinds it any more");
-  return StopError{};
+  state.links.heap.set_global(instruction.a, state.stack.back());
+  return {};
 }
 
 /// From here on the global means a variable of the running frame.

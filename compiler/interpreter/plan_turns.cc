@@ -35,7 +35,7 @@ std::string_view choice_of(PlanMachine::ParEnd end) {
 
 /// Any branch of a `par` that waits may go on, and a `par` that is decided may end.
 std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
-  const auto waiting = PlanMachine::waiting(state);
+  const auto waiting = machine_.waiting(state);
   const auto endings = PlanMachine::endings(state);
   const auto ways = waiting.size() + endings.size();
   std::uint32_t turn = 0;
@@ -57,6 +57,8 @@ std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
     return advance(next);
   }
   const auto form = state.pars.front().form;
+  // All that is left waits for fluents that nobody changes any more.
+  if (ways == 0) return terminal(TerminalKind::kBound, "wait-for", form);
   const auto drops = [](const PlanMachine::Ending& ending) {
     return ending.end == PlanMachine::ParEnd::kValueWithoutCleanups ||
            ending.end == PlanMachine::ParEnd::kFailureWithoutCleanups;

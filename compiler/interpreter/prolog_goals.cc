@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "compiler/builtins/unknown_values.h"
 #include "compiler/interpreter/prolog_search.h"
 
 namespace parallax::compiler {
@@ -28,6 +29,29 @@ Step goal_ground(Search& search, const Arguments& args) {
 }
 
 Step goal_member(Search& search, const Arguments& args) { return search.any_of(args[0], args[1]); }
+
+/// (symbol-value *name* value), of the globals that the robot's packages define.
+Step goal_symbol_value(Search& search, const Arguments& args) {
+  const auto name = search.terms.symbol(args[0]);
+  const auto value = name ? robot_global(*name, search.values) : std::nullopt;
+  if (!value) {
+    return search.wrong(search.at(), "symbol-value", "it knows the robot's own globals only");
+  }
+  return Search::truth(search.terms.unify(args[1], search.terms.atom(*value)));
+}
+
+/// Is each element of the first list, known, in the second one?
+Step goal_subset(Search& search, const Arguments& args) {
+  const auto part = search.terms.elements(args[0]);
+  const auto whole = search.terms.elements(args[1]);
+  if (!part || !whole) return Step::kFalse;
+  return Search::truth(std::all_of(part->begin(), part->end(), [&](PrologTermId item) {
+    const auto value = search.terms.value(item);
+    return value && std::any_of(whole->begin(), whole->end(), [&](PrologTermId other) {
+             return search.terms.value(other) == value;
+           });
+  }));
+}
 
 /// Two lists that are known; with a free one it would have to guess.
 Step goal_append(Search& search, const Arguments& args) {
@@ -198,6 +222,8 @@ constexpr GoalEntry kGoals[] = {
     {"bound", 1, 1, goal_bound},
     {"ground", 1, 1, goal_ground},
     {"member", 2, 2, goal_member},
+    {"subset", 2, 2, goal_subset},
+    {"symbol-value", 2, 2, goal_symbol_value},
     {"append", 3, 3, goal_append},
     {"length", 2, 2, goal_length},
     {"<", 2, 2, goal_less},

@@ -146,7 +146,10 @@ ProofWorld::Computed RuleProofs::call(const std::string& function,
 ProofWorld::Computed RuleProofs::call_builtin_named(const std::string& function,
                                                     const std::vector<ValueId>& arguments,
                                                     DatumId at, ProofAnswers& answers) {
-  const auto builtin = function.starts_with('%') ? std::nullopt : find_builtin(function);
+  // Another package may define a function of that name.
+  const auto prefix = function.rfind(':');
+  const auto name = prefix == std::string::npos ? function : function.substr(prefix + 1);
+  const auto builtin = name.starts_with('%') ? std::nullopt : find_builtin(name);
   if (!builtin) {
     sink_.error(codes::kUnknownPlanForm, data_.source(at), function)
         .note("a rule calls functions of the plan's files and the static functions of the subset");
@@ -176,6 +179,7 @@ ProofWorld::Computed RuleProofs::run(std::uint32_t unit, const std::vector<Value
     const auto stop = machine_.run(state);
     if (std::holds_alternative<StopDone>(stop)) {
       links_.chains = state.links.chains;
+      links_.heap = state.links.heap;
       links_.next = std::max(links_.next, state.links.next);
       return Value{state.stack.back()};
     }

@@ -140,6 +140,35 @@ void form_handler_bind(FormCompiler& c, DatumId form, FormItems items) {
   c.code.squeeze(c.code.height() - 1 - height, form);
 }
 
+/// (the type form): a Lisp error if the value has another type, as with a declaration.
+void form_the(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() != 3) return c.refuse(form, "expected a type and a form");
+  c.compile(items[2]);
+  c.code.load(c.code.height() - 1, form);
+  c.code.constant(c.datum_value(items[1]), items[1]);
+  c.code.builtin("%may-be", 2, form);
+  fail_if_nil(c, "type-error", form);
+  c.code.drop(form);
+}
+
+/// (make-instance 'class keyword value...): the class's maker.
+void form_make_instance(FormCompiler& c, DatumId form, FormItems items) {
+  const bool quoted = items.size() > 1 && c.data.head(items[1]) == "quote" &&
+                      c.data.children(items[1]).size() == 2 &&
+                      c.data.is_symbol(c.data.children(items[1])[1]);
+  if (!quoted) return c.refuse(form, "expected a quoted class");
+  const auto name = c.data.children(items[1])[1];
+  const auto maker = "%make-" + std::string(c.data.name(name));
+  if (!c.defined.functions.contains(maker)) {
+    c.unknown_form(form, name);
+    return c.nil(form);
+  }
+  std::vector<DatumId> call = {
+      c.data.add_named(DatumKind::kSymbol, maker, "", c.data.source(form))};
+  call.insert(call.end(), items.begin() + 2, items.end());
+  c.compile(c.data.add_list(call, c.data.source(form)));
+}
+
 /// (type t variable...), the only declaration that SBCL checks and plans use.
 void check_declaration(FormCompiler& c, DatumId declaration) {
   const auto parts = c.data.children(declaration);
@@ -171,9 +200,14 @@ void FormCompiler::compile_declared(FormItems body) {
 
 std::span<const FormEntry> type_forms() {
   static constexpr FormEntry kForms[] = {
-      {"typecase", form_typecase},           {"etypecase", form_typecase},
-      {"check-type", form_check_type},       {"assert", form_assert},
-      {"ignore-errors", form_ignore_errors}, {"handler-bind", form_handler_bind},
+      {"typecase", form_typecase},
+      {"etypecase", form_typecase},
+      {"check-type", form_check_type},
+      {"assert", form_assert},
+      {"ignore-errors", form_ignore_errors},
+      {"handler-bind", form_handler_bind},
+      {"the", form_the},
+      {"make-instance", form_make_instance},
   };
   return kForms;
 }

@@ -217,8 +217,12 @@ ModelValueId Explorer::free_register(const PlanState& state, DatumId form,
   for (const auto value : own) {
     if (!taken.contains(value)) return value;
   }
-  const auto name = fmt::format("?{}{}", variable, graph_.values.size() + 1);
-  own.push_back(graph_.values.add({name, variable}));
+  // No input has that name.
+  auto number = graph_.values.size() + 1;
+  const auto name = [&] { return fmt::format("?{}{}", variable, number); };
+  while (std::find(code_.inputs.begin(), code_.inputs.end(), name()) != code_.inputs.end())
+    ++number;
+  own.push_back(graph_.values.add({name(), variable}));
   return own.back();
 }
 
@@ -252,6 +256,7 @@ std::optional<PlanTarget> Explorer::question(PlanState& state, const StopQuestio
 
 std::optional<PlanTarget> Explorer::stopped(PlanState& state, const PlanStop& stop) {
   if (const auto* at = std::get_if<StopPerform>(&stop)) return perform(state, *at);
+  drop_dead_cells(state, {}, values_);
   if (const auto* at = std::get_if<StopQuestion>(&stop)) return question(state, *at);
   if (const auto* at = std::get_if<StopFailed>(&stop))
     return terminal(TerminalKind::kFailed, at->cause, std::nullopt);
@@ -291,6 +296,7 @@ std::optional<PlanTarget> Explorer::advance(Job& job) {
     if (act == nullptr) return stopped(job.state, stop);
     act->designator = resolve_links(job.state.links, values_, act->designator);
     drop_dead_links(job.state, std::span(&act->designator, 1), values_);
+    drop_dead_cells(job.state, std::span(&act->designator, 1), values_);
     if (!begins) {
       const auto asked = ask_goal(job.state, *act);
       if (!asked.goes_on) return asked.target;
@@ -366,6 +372,9 @@ void Explorer::write_gaps() {
 
 base::Result<PlanGraph> Explorer::explore() {
   if (!machine_.run_definitions()) return sink_.already_reported();
+  for (const auto& input : code_.inputs) {
+    graph_.inputs.push_back(graph_.values.add({input, input.substr(1)}));
+  }
   jobs_.push_back({machine_.start(), {}, {}, Job::Edge::kEntry, 0});
   while (!full_) {
     auto job = next_job();

@@ -71,6 +71,7 @@ std::int64_t change_of(const PlanCode& code, const PlanInstruction& instruction)
     case PlanOp::kFailValue:
     case PlanOp::kExpectList:
     case PlanOp::kEndBranch:
+    case PlanOp::kWait:
     case PlanOp::kTick:
     case PlanOp::kDone:
       return 0;
@@ -280,6 +281,7 @@ bool ValueFlow::step(const ValuePlace& place, std::vector<std::uint32_t>& return
     case PlanOp::kAddKey:
     case PlanOp::kPerform:
     case PlanOp::kFailValue:
+    case PlanOp::kWait:
       return taken(place, 1, false);
     case PlanOp::kBuiltin:
       return taken(place, one.b, keeping_[one.a]);

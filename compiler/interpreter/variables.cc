@@ -53,13 +53,20 @@ const LexicalBinding* assignable(FormCompiler& c, DatumId form, DatumId place) {
       return nullptr;
     }
   }
-  auto error = c.error(codes::kHeapWrite, place, c.form_name(form), print_datum(c.data, place));
-  if (const auto global = c.defined.globals.find(c.data.is_symbol(place) ? c.data.key(place) : "");
-      global != c.defined.globals.end()) {
-    error.note(c.data.source(c.code.code().globals[global->second].source),
-               "it is a global constant, defined here");
+  const auto global = c.defined.globals.find(c.data.is_symbol(place) ? c.data.key(place) : "");
+  if (global == c.defined.globals.end()) {
+    c.error(codes::kHeapWrite, place, c.form_name(form), print_datum(c.data, place));
+    return nullptr;
   }
-  return nullptr;
+  const auto source = c.code.code().globals[global->second].source;
+  if (c.data.head(source) == "defconstant") {
+    c.error(codes::kHeapWrite, place, c.form_name(form), print_datum(c.data, place))
+        .note(c.data.source(source), "it is a constant, defined here");
+    return nullptr;
+  }
+  c.code.code().sets_globals = true;
+  auto named = c.code.named(BindingKind::kSpecial, global->first, global->second);
+  return &c.defined.set_globals.insert_or_assign(global->second, named).first->second;
 }
 
 void assign(FormCompiler& c, const LexicalBinding& place, DatumId form) {

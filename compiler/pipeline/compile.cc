@@ -156,10 +156,11 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, const std::atomic<b
   if (!binding) return sink.already_reported();
   UnrollOptions options;
   auto plan_texts = input.plan;
-  if (input.entry && input.entry->starts_with('(')) {
+  const auto beginning = base::one_line(input.entry.value_or(""));
+  if (input.entry && (beginning.empty() || beginning.starts_with('('))) {
     options.entry_forms = plan_texts.emplace_back(files.add("--plan-entry", *input.entry));
-  } else {
-    options.entry = input.entry;
+  } else if (input.entry) {
+    options.entry = beginning;
   }
   options.limits = input.limits;
   options.interleave = input.interleave;

@@ -33,6 +33,14 @@ namespace parallax::compiler {
 
 namespace {
 
+void at_most_one(const std::vector<FormulaId>& atoms, std::uint32_t origin, GroundModel& model) {
+  for (std::size_t i = 0; i < atoms.size(); ++i) {
+    for (std::size_t j = i + 1; j < atoms.size(); ++j) {
+      model.require(model.formulas().disjunction(~atoms[i], ~atoms[j]), origin);
+    }
+  }
+}
+
 /// Values of a plan's registers at t + 1, given where control was at t. Every perform that returns
 /// something picks one object that makes its formula true, and the pick has an atom of its own; a
 /// register has exactly one value where the plan goes on to read it, and none elsewhere.
@@ -63,7 +71,6 @@ class RegisterStep {
   void pick(const PlanLocation& location, FormulaId ok, std::uint32_t origin);
   void carry(const RegisterSet& live, std::optional<ModelValueId> fresh, FormulaId condition,
              std::uint32_t origin);
-  void at_most_one(const std::vector<FormulaId>& atoms, std::uint32_t origin);
 
   const PlanGraph& graph_;
   const PlanFormulas& formulas_;
@@ -139,14 +146,6 @@ void RegisterStep::carry(const RegisterSet& live, std::optional<ModelValueId> fr
   }
 }
 
-void RegisterStep::at_most_one(const std::vector<FormulaId>& atoms, std::uint32_t origin) {
-  for (std::size_t i = 0; i < atoms.size(); ++i) {
-    for (std::size_t j = i + 1; j < atoms.size(); ++j) {
-      model_.require(model_.formulas().disjunction(~atoms[i], ~atoms[j]), origin);
-    }
-  }
-}
-
 void RegisterStep::finish(std::uint32_t origin) {
   auto& formulas = model_.formulas();
   std::vector<FormulaId> chosen;
@@ -155,7 +154,7 @@ void RegisterStep::finish(std::uint32_t origin) {
     model_.require(formulas.implication(entry.first, formulas.disjunction(std::move(entry.second))),
                    origin);
   }
-  at_most_one(chosen, origin);
+  at_most_one(chosen, origin, model_);
   for (auto& [id, conditions] : live_) {
     const auto live = formulas.disjunction(std::move(conditions));
     std::vector<FormulaId> held;
@@ -164,7 +163,7 @@ void RegisterStep::finish(std::uint32_t origin) {
       model_.require(formulas.implication(held.back(), live), origin);
     }
     model_.require(formulas.implication(live, formulas.disjunction(held)), origin);
-    at_most_one(held, origin);
+    at_most_one(held, origin, model_);
   }
 }
 
@@ -238,6 +237,7 @@ class PlanEncoder {
     const auto count = graph_.locations.size() + graph_.terminals.size() + graph_.branches.size();
     auto incoming = std::vector<std::vector<FormulaId>>(count);
     route(graph_.entry, model_.formulas().truth(), incoming);
+    choose_inputs();
     for (Timepoint t = 0;; ++t) {
       if (!decide(t, incoming)) return sink_.already_reported();
       const auto here = place_control(incoming, t);
@@ -261,6 +261,19 @@ class PlanEncoder {
     PlanRegisters::Reading reading;
     std::uint32_t event = 0;
   };
+
+  /// Each input that the plan reads has exactly one value, any one of its sort.
+  void choose_inputs() {
+    for (const auto input : graph_.inputs) {
+      if (!liveness_.at(graph_.entry).contains(input)) continue;
+      std::vector<FormulaId> held;
+      for (const auto& value : registers_.values(input)) {
+        held.push_back(registers_.holds(input, value, 0));
+      }
+      model_.require(model_.formulas().disjunction(held), origin_of(0));
+      at_most_one(held, origin_of(0), model_);
+    }
+  }
 
   bool resolve_events() {
     for (const auto& location : graph_.locations) {

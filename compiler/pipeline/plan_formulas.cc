@@ -118,11 +118,41 @@ class PlanFormulaChecker {
       if (!sort) return refuse_result(name, location.success.source);
       sorts[location.result->index()] = sort;
     }
+    for (const auto input : graph_.inputs) {
+      sorts[input.index()] = sort_of_input(input);
+      if (!sorts[input.index()]) return refuse_input(graph_.values[input].name);
+    }
     for (const auto& sort : sorts) {
       PARALLAX_REQUIRE(sort.has_value(), "every register is bound by some location");
       out_.register_sorts.push_back(*sort);
     }
     return true;
+  }
+
+  /// That of the first argument place of an event or a formula at which it stands.
+  std::optional<SortId> sort_of_input(ModelValueId input) const {
+    const auto is_meant = [&](const FormulaNode& node) {
+      return node.leaf == LeafKind::kRegister && node.number == input.index();
+    };
+    for (const auto& location : graph_.locations) {
+      if (const auto sort = sort_by_use(model_, location.event, is_meant)) return sort;
+      if (const auto sort = sort_by_use(model_, location.success.formula, is_meant)) return sort;
+    }
+    for (const auto& branch : graph_.branches) {
+      if (branch.free) continue;
+      if (const auto sort = sort_by_use(model_, branch.guard, is_meant)) return sort;
+    }
+    return std::nullopt;
+  }
+
+  bool refuse_input(const std::string& name) {
+    sink_.error_about(
+        codes::kNoPlanEntry, "--plan-entry",
+        fmt::format("`{}` is no argument of an event or of a formula, so that nothing "
+                    "says which values it has",
+                    name));
+    failed_ = true;
+    return false;
   }
 
   bool refuse_result(const std::string& variable, base::SourceRange source) {

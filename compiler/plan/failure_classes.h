@@ -36,7 +36,12 @@ class FailureClasses {
   /// All names, sorted.
   std::vector<std::string> names() const;
 
+  /// Structures and classes of the plan are types, but no conditions.
+  void add_structure(std::string_view name) { structures_.emplace(name); }
+  bool has_structure(std::string_view name) const { return structures_.contains(name); }
+
  private:
+  std::set<std::string, std::less<>> structures_;
   std::map<std::string, std::vector<std::string>, std::less<>> parents_;
   std::set<std::string, std::less<>> added_;
 };

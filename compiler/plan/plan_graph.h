@@ -140,6 +140,9 @@ struct PlanGraph {
   base::Store<TerminalId, PlanTerminal> terminals;
   base::Store<BranchId, PlanBranch> branches;
   base::Store<ModelValueId, ModelValue> values;
+  /// Registers that have any value of their sort from the beginning: free variables of the call
+  /// that the plan begins with.
+  std::vector<ModelValueId> inputs;
   std::vector<PlanHandler> handlers;  // in the order of the text
   std::vector<PlanGap> gaps;          // in the order of the text
 };

@@ -5,6 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "compiler/base/ground_name.h"
+
 namespace parallax::runtime {
 
 using compiler::AtomKind;
@@ -62,6 +64,38 @@ std::string PlanEnds::of(const Trace& trace) {
     try_end(index_.at(compiler::PlanCutId(static_cast<std::uint32_t>(cut)), n), "cut");
   }
   return out;
+}
+
+std::int64_t PlanEnds::initial_states(const Trace& trace, const std::set<std::string>& asked,
+                                      std::int64_t most) {
+  std::vector<Literal> settings;
+  model_->for_each_atom([&](const compiler::AtomRef& atom) {
+    const bool starts = atom.kind == AtomKind::kRegister && atom.time == 0;
+    const bool counts = atom.kind == AtomKind::kPredicate && !atom.time &&
+                        asked.contains(std::string(base::symbol_of(atom.name)));
+    if (starts || counts) settings.push_back(atom.literal());
+  });
+  if (settings.empty()) return 1;
+  const auto n = trace.length();
+  auto assumptions = assumptions_of(trace);
+  const auto counting = session_.new_variable();
+  assumptions.push_back(counting);
+  std::int64_t count = 0;
+  auto status = SolveStatus::kSatisfiable;
+  while (count < most) {
+    status = session_.solve_whole(n, assumptions);
+    if (status != SolveStatus::kSatisfiable) break;
+    ++count;
+    std::vector<Literal> other = {~counting};
+    for (const auto literal : settings) {
+      if (!session_.is_fixed(literal))
+        other.push_back(session_.value(literal) ? ~literal : literal);
+    }
+    session_.add_clause(other);
+  }
+  const auto over = ~counting;
+  session_.add_clause(std::span(&over, 1));
+  return status == SolveStatus::kUnknown ? 0 : count;
 }
 
 }  // namespace parallax::runtime

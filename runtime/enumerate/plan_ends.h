@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,11 @@ class PlanEnds {
   /// ` or `. Empty where the plan goes on behind the last timepoint, which meets the constraints,
   /// and if the solver was stopped. One solver call for each end that the plan has.
   std::string of(const Trace& trace);
+  /// How many initial states lead to the trace, its fluents given: by the values of predicates
+  /// whose symbol is `asked`, and of the variables that the plan begins with. Stops at `most`; 0 if
+  /// the solver was stopped. One solver call for each, and one more.
+  std::int64_t initial_states(const Trace& trace, const std::set<std::string>& asked,
+                              std::int64_t most);
 
  private:
   std::vector<Literal> assumptions_of(const Trace& trace) const;

@@ -343,27 +343,6 @@ TEST_CASE("turns of branches that meet again cost their number, not their orders
   CHECK(answer["proof"] == "checked");
 }
 
-TEST_CASE("the entry of a plan may be a call with arguments") {
-  const CliFixture cli;
-  cli.write("named.bind", "motion going (:object name ?r) -> Go(?r) ok: RobotIn(?r) @t+1\n");
-  cli.write("plan.lisp",
-            "(defun visit (?r) (perform (a motion (type going) (object (an object (name ?r))))))\n"
-            "(defun unknown () (read-camera))\n"
-            "(visit 'r1)\n");
-  const auto entry = [&](const std::string& text) {
-    return cli.parallax({"compile", "domain.e", "start.e", "--plan", "plan.lisp", "--bind",
-                         "named.bind", "--horizon", "2", "--emit=cfg", "--plan-entry", text});
-  };
-  const auto called = entry("(visit 'r2)");
-  CHECK(called.code == 0);
-  CHECK(called.out.find("L0 Go(r2) at plan.lisp:1") != std::string::npos);
-  CHECK(called.out.find("Go(r1)") == std::string::npos);
-  CHECK(entry("(visit \"r2\")").out == called.out);
-  CHECK(entry("visit").err.find("--plan-entry \"(visit ...)\"") != std::string::npos);
-  CHECK(entry("(visit ?x)").err.find("--plan-entry:1:8-9: error[CPL004]") != std::string::npos);
-  CHECK(entry("(visit").err.find("--plan-entry:1:1: error[CPL001]") != std::string::npos);
-}
-
 TEST_CASE("traces tell how the plan ended") {
   const CliFixture cli;
   cli.write("named.bind", "action picking-up () -> PickUp() ok: Holding() @t+1 else lost\n");
@@ -434,6 +413,10 @@ TEST_CASE("verify: a violation says what of the model the plan asked for") {
   CHECK(answer["trace"]["ended"] == "done");
   CHECK(cli.parallax(verify).out.find("of what the plan asks for,\n  Fragile(cup)\n") !=
         std::string::npos);
+  // Predicates that have to be false count as well.
+  cli.write("kinds.lisp",
+            "(unless (holds '(fragile cup)) (perform (an action (type taking) (object cup))))\n");
+  CHECK(json_of(cli, verify, 1)["inputs"] == nlohmann::json::array({"!Fragile(cup)"}));
 }
 
 TEST_CASE("a loop of `go` around a question ends at its bound") {

@@ -7,8 +7,10 @@
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
+#include "compiler/pipeline/compile.h"
 #include "runtime/certify/certificate.h"
 #include "runtime/enumerate/plan_enumerator.h"
+#include "tools/app/trace_writer.h"
 
 namespace parallax::tools {
 namespace {
@@ -47,6 +49,30 @@ bool may_be_cut(const runtime::CompiledModel& model) {
     if (index.at(compiler::PlanCutId(static_cast<std::uint32_t>(cut)), model.horizon)) return true;
   }
   return false;
+}
+
+namespace {
+
+void tell_gap(const compiler::PlanGap& gap, Context& context) {
+  const bool orders = gap.kind == compiler::GapKind::kOrder;
+  context.remark(fmt::format("{}: {} at {}", orders ? "not explored" : "approximated", gap.text,
+                             context.files().place(gap.source)));
+}
+
+}  // namespace
+
+void tell_reservations(const compiler::Compilation& compilation, Context& context) {
+  if (compilation.plan) {
+    for (const auto& gap : compilation.plan->gaps) tell_gap(gap, context);
+  }
+  const auto& model = compilation.model;
+  const compiler::AtomIndex index(model);
+  for (std::size_t cut = 0; cut < model.plan_cuts.size(); ++cut) {
+    const compiler::PlanCutId id(static_cast<std::uint32_t>(cut));
+    if (!index.at(id, model.horizon)) continue;
+    context.remark(fmt::format("unrolling was cut: `{}` at {}", model.plan_cuts[cut].form,
+                               place_text(model.plan_cuts[cut].place)));
+  }
 }
 
 TraceCertifier::TraceCertifier(const CertifyOption& option, const std::vector<std::string>& models,
@@ -117,9 +143,7 @@ void TraceCertifier::note_gaps(const std::optional<compiler::PlanGraph>& plan, b
   for (const auto& gap : plan->gaps) {
     const bool orders = gap.kind == compiler::GapKind::kOrder;
     (orders ? reservations_.orders : reservations_.meaning) = true;
-    if (!tells) continue;
-    context_.remark(fmt::format("{}: {} at {}", orders ? "not explored" : "approximated", gap.text,
-                                context_.files().place(gap.source)));
+    if (tells) tell_gap(gap, context_);
   }
   verdict_ = reservations_.verdict();
 }

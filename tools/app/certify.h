@@ -13,6 +13,10 @@
 #include "runtime/solver/sat_solver.h"
 #include "tools/app/context.h"
 
+namespace parallax::compiler {
+struct Compilation;
+}
+
 namespace parallax::tools {
 
 /// `--certify[=FILE]`: whether a list of traces is complete, as a checked proof.
@@ -41,6 +45,10 @@ struct PlanReservations {
 
 /// Can control of the plan be where unrolling was cut, for all that its graph says, at the horizon?
 bool may_be_cut(const runtime::CompiledModel& model);
+
+/// Says on standard error at which places the real plan may have other executions than those that
+/// are explored, and where unrolling was cut. For answers that carry no proof.
+void tell_reservations(const compiler::Compilation& compilation, Context& context);
 
 /// The verdict on a claim that was searched by cubes.
 inline constexpr std::string_view kByCubes = "cubes, not proof checked";

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/contract.h"
 #include "compiler/base/suggest.h"
 #include "harness/campaign/trial.h"
@@ -34,6 +35,11 @@ ClosedLoop::ClosedLoop(const ScenarioModel& loaded, Context& context)
 
 base::Result<std::unique_ptr<ClosedLoop>> ClosedLoop::make(const ScenarioModel& loaded,
                                                            Context& context) {
+  if (const auto& plan = loaded.compilation.plan; plan && !plan->inputs.empty()) {
+    return context.sink().error_about(
+        codes::kUsage, "--plan-entry",
+        fmt::format("an executed plan needs a value for `{}`", plan->values[plan->inputs[0]].name));
+  }
   auto out = std::unique_ptr<ClosedLoop>(new ClosedLoop(loaded, context));
   const auto value = [&](const std::string& predicate) {
     return runtime::predicate_value(out->session_, predicate);

@@ -278,6 +278,7 @@ std::optional<CountedTraces> count_model_orbits(const SearchOptions& options,
 std::optional<CountedTraces> count_model_traces(const SearchOptions& options,
                                                 const compiler::CompiledModel& model,
                                                 TraceCertifier& certifier, Context& context) {
+  if (may_be_cut(model)) certifier.note_cut();
   auto query = query_of(options, context);
   query.wanted = 0;
   query.breaks_symmetry = !certifier.is_asked();

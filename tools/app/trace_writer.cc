@@ -16,6 +16,21 @@ constexpr std::size_t kBlock = std::size_t{1} << 16U;
 /// After so many traces it is worth asking of all at once whether they leave atoms open.
 constexpr std::int64_t kAskedOneByOne = 16;
 
+/// Initial states of one trace that are counted; each costs a solver call.
+constexpr std::int64_t kCountedStarts = 100;
+
+std::string starts_text(std::int64_t starts) {
+  return fmt::format("  from {}{} initial states that differ in nothing printed\n", starts,
+                     starts < kCountedStarts ? "" : " or more");
+}
+
+/// The object on this line with the number.
+std::string with_starts(std::string object, std::int64_t starts) {
+  object.pop_back();
+  object += fmt::format(",\"initial_states\":{}", starts);
+  return object + (starts < kCountedStarts ? "}" : ",\"more_initial_states\":true}");
+}
+
 }  // namespace
 
 const runtime::TraceFormat& TraceWriter::format() const {
@@ -31,8 +46,10 @@ bool TraceWriter::print(const runtime::Trace& trace) {
     open = form_.open_atoms->find(trace);
     if (!open && !form_.prints_unsettled) return false;
   }
+  const auto starts = count_starts(trace);
   const auto line = [&] {
-    return open ? runtime::to_jsonl(trace, *open) : runtime::observable_jsonl(trace);
+    auto object = open ? runtime::to_jsonl(trace, *open) : runtime::observable_jsonl(trace);
+    return starts > 1 ? with_starts(std::move(object), starts) : object;
   };
   if (context_.form().json) {
     list_ += (list_.empty() ? "" : ",") + line();
@@ -43,9 +60,15 @@ bool TraceWriter::print(const runtime::Trace& trace) {
   } else if (form_.format == "jsonl") {
     context_.result(line() + '\n');
   } else {
-    context_.result(runtime::to_text(trace));
+    context_.result(runtime::to_text(trace) + (starts > 1 ? starts_text(starts) : ""));
   }
   return true;
+}
+
+/// How many initial states the trace stands for, where the form says that.
+std::int64_t TraceWriter::count_starts(const runtime::Trace& trace) {
+  if (!ends_ || form_.listing != nullptr) return 1;
+  return ends_->initial_states(trace, form_.asked, kCountedStarts);
 }
 
 TraceWriter::TraceWriter(Form form, TraceCheck* check, TraceCertifier& certifier, Context& context)

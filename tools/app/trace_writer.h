@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ class TraceWriter {
     /// The model whose plan's end the traces tell; null: none. It outlives the writer.
     const compiler::CompiledModel* plan = nullptr;
     bool all_hits = false;  // as in PlanEnumeratorOptions
+    /// Symbols of predicates that the plan asks for: traces say how many settings of them there
+    /// are.
+    std::set<std::string> asked = {};
     /// Prints only traces whose plan may have ended like this: `done`, `failed`, `cut`; empty: all.
     std::string ended = {};
   };
@@ -59,6 +63,7 @@ class TraceWriter {
   const runtime::TraceFormat& format() const;
   bool is_wanted(const std::string& ended) const;
   bool print(const runtime::Trace& trace);
+  std::int64_t count_starts(const runtime::Trace& trace);
   bool needs_traces();
 
   Form form_;

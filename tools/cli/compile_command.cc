@@ -7,6 +7,7 @@
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/pipeline/compile_report.h"
+#include "tools/app/certify.h"
 #include "tools/app/emit_stage.h"
 #include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
@@ -111,6 +112,7 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
                                  gap.text));
     return 0;
   }
+  if (options.emit == "cnf") tell_reservations(*compilation, invocation);
   report_costs(options, *compilation, invocation);
   compiler::map_paths(compilation->model, paths);
   const auto& model = compilation->model;

@@ -7,6 +7,7 @@
 #include "compiler/base/json.h"
 #include "compiler/base/word_table.h"
 #include "compiler/base/words.h"
+#include "tools/app/certify.h"
 #include "tools/app/consequences.h"
 #include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
@@ -203,6 +204,7 @@ int run_consequences(ConsequencesOptions options, Invocation& invocation) {
   options.query.only_always = options.always;
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
+  tell_reservations(*compilation, invocation);
   return abduces ? tell_abduction(options, compilation->model, invocation)
                  : tell_consequences(options, compilation->model, invocation);
 }

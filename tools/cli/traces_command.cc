@@ -8,6 +8,7 @@
 #include "runtime/trace/trace.h"
 #include "tools/app/best_traces.h"
 #include "tools/app/certify.h"
+#include "tools/app/plan_inputs.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_listing.h"
 #include "tools/app/trace_search.h"
@@ -34,16 +35,14 @@ struct TracesOptions {
   CertifyOption certify;
 };
 
-/// Conflicts that it may cost to find out what a single trace leaves open.
-constexpr std::int64_t kBriefly = 20'000;
+constexpr std::int64_t kBriefly = 20'000;  // conflicts to find what one trace leaves open
 
 /// Message for a list that is complete and empty.
 void point_to_explanation(const TracesOptions& options, const Invocation& invocation) {
   std::string command = "parallax explain";
   for (const auto& model : options.model.models) command += " " + model;
   if (options.model.horizon >= 0) command += fmt::format(" --horizon {}", options.model.horizon);
-  for (const auto& formula : options.model.until)
-    command += fmt::format(" --until \"{}\"", formula);
+  for (const auto& text : options.model.until) command += fmt::format(" --until \"{}\"", text);
   invocation.remark(fmt::format("no trace: `{}` says which axioms exclude each other", command));
 }
 
@@ -254,11 +253,12 @@ bool names_open_atoms(const TracesOptions& options, const compiler::CompiledMode
 }
 
 /// `open_atoms` may be null.
-TraceWriter::Form form_of(const TracesOptions& options, const compiler::CompiledModel& model,
+TraceWriter::Form form_of(const TracesOptions& options, const compiler::Compilation& compilation,
                           runtime::ListFormat* listing, runtime::OpenAtomFinder* open_atoms) {
   const auto limit = options.search.sample > 0 ? 0 : options.search.limit;
   TraceWriter::Form form{options.listing.format, options.count, limit, listing, open_atoms};
-  form.plan = model.plan.empty() ? nullptr : &model;
+  form.plan = compilation.model.plan.empty() ? nullptr : &compilation.model;
+  if (compilation.plan) form.asked = symbols_read(*compilation.plan);
   form.all_hits = options.search.hits == "all";
   form.ended = options.ended;
   return form;
@@ -297,8 +297,9 @@ int list_compiled(const TracesOptions& options, const compiler::Compilation& com
     const auto make_solver = [] { return runtime::make_cadical_solver(&stop_flag()); };
     open_atoms.emplace(model, make_solver, options.search.hits == "all");
   }
-  TraceWriter writer(form_of(options, model, listing.get(), open_atoms ? &*open_atoms : nullptr),
-                     check ? &*check : nullptr, *certifier, invocation);
+  TraceWriter writer(
+      form_of(options, compilation, listing.get(), open_atoms ? &*open_atoms : nullptr),
+      check ? &*check : nullptr, *certifier, invocation);
   std::optional<Ending> ending;
   if (model.has_constraints) {
     ending = list_plan_traces(options.search, model, *certifier, writer, invocation);
@@ -338,7 +339,7 @@ int list_witness(const TracesOptions& options, const compiler::Compilation& comp
     };
     open_atoms.emplace(bounded ? *bounded : model, make_solver, false);
   }
-  auto form = form_of(options, model, listing.get(), open_atoms ? &*open_atoms : nullptr);
+  auto form = form_of(options, compilation, listing.get(), open_atoms ? &*open_atoms : nullptr);
   form.prints_unsettled = true;
   TraceWriter writer(std::move(form), check ? &*check : nullptr, none, invocation);
   if (optimum.witness) writer.write(*optimum.witness);

@@ -20,6 +20,7 @@
 #include "runtime/enumerate/plan_ends.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/certify.h"
+#include "tools/app/plan_inputs.h"
 #include "tools/app/property_check.h"
 #include "tools/app/rests_on.h"
 #include "tools/app/scenario_model.h"
@@ -56,7 +57,7 @@ struct CheckedProperty {
   bool by_cubes = false;          // it was searched by cubes, without a log
   std::string proof;              // "proof checked"; empty where there is nothing to prove
   PlanReservations reservations;  // why nothing was proved
-  /// Atoms of predicates that hold wherever the violation happens, and that the plan asks for.
+  /// The plan's inputs on the way there (plan_inputs).
   std::vector<std::string> inputs;
   std::string proof_origin;                      // what made it, if it was accepted
   std::string proof_file;                        // where it is kept
@@ -149,31 +150,6 @@ std::vector<PerformedStep> steps_at(const compiler::CompiledModel& model,
       }
     }
     out.push_back(std::move(step));
-  }
-  return out;
-}
-
-/// The symbols that the plan's formulas are about.
-std::set<std::string, std::less<>> symbols_read(const compiler::PlanGraph& plan) {
-  std::set<std::string, std::less<>> out;
-  const auto note = [&](const compiler::FormulaTree& tree) {
-    for (const auto& node : tree.nodes) {
-      if (node.name_length > 0) out.emplace(tree.name(node));
-    }
-  };
-  for (const auto& location : plan.locations) note(location.success.formula);
-  for (const auto& branch : plan.branches) note(branch.guard);
-  return out;
-}
-
-std::vector<std::string> inputs_of(const compiler::PlanGraph& plan, const runtime::Trace& trace,
-                                   const runtime::OpenAtoms& open) {
-  std::vector<std::string> out;
-  const auto read = symbols_read(plan);
-  for (const auto& atom : trace.predicates) {
-    const bool is_open =
-        std::find(open.predicates.begin(), open.predicates.end(), atom) != open.predicates.end();
-    if (!is_open && read.contains(base::symbol_of(atom))) out.push_back(atom);
   }
   return out;
 }
@@ -364,7 +340,7 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
     answer.open = finder.find(*answer.violation);
     if (compilation->plan) {
       if (answer.open) {
-        answer.inputs = inputs_of(*compilation->plan, *answer.violation, *answer.open);
+        answer.inputs = plan_inputs(*compilation->plan, model, *answer.violation, *answer.open);
       }
       runtime::PlanEnds ends(model, make_solver(), false);
       answer.violation->ended = ends.of(*answer.violation);

@@ -3,44 +3,10 @@
 #include <set>
 
 #include "tests/compiler/plan/plan_fixture.h"
+#include "tests/compiler/plan/ways.h"
 
 namespace parallax::compiler {
 namespace {
-
-/// The event sequences of all ways through the graph on which the performs with the events of
-/// `failing` fail and all others succeed; each ends with its terminal.
-class Ways {
- public:
-  Ways(const Unrolled& plan, std::set<std::string> failing = {})
-      : plan_(plan), failing_(std::move(failing)) {
-    follow(plan.graph->entry, "");
-  }
-  std::set<std::string> all;
-
- private:
-  void follow(const PlanTarget& target, const std::string& before) {
-    REQUIRE(before.size() < 1000);
-    if (const auto* id = std::get_if<LocationId>(&target)) {
-      const auto& location = plan_.graph->locations[*id];
-      const bool fails = failing_.contains(location.event.text);
-      follow(fails ? location.on_failure : location.on_success, before + location.event.text + " ");
-    } else if (const auto* branch = std::get_if<BranchId>(&target)) {
-      REQUIRE(plan_.graph->branches[*branch].free);
-      follow(plan_.graph->branches[*branch].if_true, before);
-      follow(plan_.graph->branches[*branch].if_false, before);
-    } else {
-      all.insert(before + plan_.target(target));
-    }
-  }
-  const Unrolled& plan_;
-  std::set<std::string> failing_;
-};
-
-Unrolled by_turns(const std::string& text) {
-  UnrollOptions options;
-  options.interleave = true;
-  return unroll(prelude() + text, options);
-}
 
 std::size_t orders(const std::string& text) {
   const auto plan = by_turns(text);
@@ -264,6 +230,12 @@ TEST_CASE("branches: the graph says which executions it leaves out") {
   CHECK(gaps(by_turns("(with-failure-handling ((plan-failure (e) (return))) (par (unwind-protect "
                       "(go1) (sig)) (pick)))(go2)")) ==
         Strings{"clean-ups of `par` among what follows it"});
+  // One that only tells others than the robot comes unseen.
+  CHECK(gaps(by_turns("(with-failure-handling ((plan-failure (e) (return))) (par (unwind-protect "
+                      "(go1) (roslisp:ros-info (a b) \"over\") "
+                      "(cram-occasions-events:on-event (make-instance 'robot-state-changed))) "
+                      "(pick)))(go2)"))
+            .empty());
 }
 
 TEST_CASE("branches: one that sleeps again and again brings nothing new") {

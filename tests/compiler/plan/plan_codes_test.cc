@@ -51,17 +51,16 @@ const Case kCases[] = {
     {"(make-quaternion 0 0 0 0)", "CPL008", "`make-quaternion`: the quaternion has no direction"},
     {"(holds 'f)", "CPL008", "`holds`: expected a quoted fluent such as '(holding left box)"},
     {"(performe (a motion (type going)))", "CPL010", "no form or function `performe`"},
-    {"(try-all (sig) (sig))", "CPL011", "`try-all` is a reactive form; the subset has none"},
+    {"(fl-funcall #'car 1)", "CPL011", "`fl-funcall` is a reactive form; the subset has none"},
+    {"(wait-for 1)", "CPL011", "`wait-for` is a reactive form; the subset has none"},
     {"(pursue)", "CPL003", "malformed `pursue`: without branches it waits for nothing and fails"},
     {"(pursue (list 1) (list 2))", "W-PAR", "the branches of `pursue` are taken in written order"},
     {"(with-failure-handling ((condition (e) (return))) 1)", "W-BROAD",
      "a handler of `condition` also takes what is no failure"},
-    {"(setf (slot-value x 'y) 1)", "CPL012",
-     "`setf` writes to `(slot-value x (quote y))`, which is not a lexical variable"},
-    {"(defvar *x* 1)(setf *x* 2)", "CPL012",
-     "`setf` writes to `*x*`, which is not a lexical variable"},
-    {"(defvar *x* 1)(funcall (let ((*x* 2)) (lambda () (setf *x* 3))))", "CPL012",
-     "`setf` writes to `*x*`, which is not a lexical variable"},
+    {"(setf (symbol-value 'y) 1)", "CPL012",
+     "`setf` writes to `(symbol-value (quote y))`, which is not a lexical variable"},
+    {"(defconstant +x+ 1)(setf +x+ 2)", "CPL012",
+     "`setf` writes to `+x+`, which is not a lexical variable"},
     {"(flet ((g () 1)) (funcall 'g))", "CPL010", "no form or function `g`"},
     {"((lambda (k) k))", "CPL007", "`a lambda`: no value for `k`"},
     {"((lambda))", "CPL003", "malformed `(...)`: expected a lambda with parameters"},
@@ -74,8 +73,9 @@ const Case kCases[] = {
     {"(defun f () (:tag a (list 1)))(f)", "CPL003", "malformed `(...)`: a form starts with a name"},
     {"(list 1)(flet ((f () (defmacro m () 1))) (f))", "CPL013",
      "`defmacro` is not in the subset here: macros are defined at top level; use `macrolet`"},
-    {"(loop for x across y do (print x))", "CPL013",
-     "`across` is not in the subset here: this kind of `for x`"},
+    {"(loop for x being the symbols of y do (print x))", "CPL013",
+     "`symbols` is not in the subset here: this kind of `for x`"},
+    {"(loop for x across 5 do (print x))", "CPL008", "`loop`: argument 1 is 5, not an array"},
     {"(defmacro m () '(m))(m)", "CPL052",
      "expanding the plan's macros takes more than 50000 expansions"},
     {"(m)(defmacro m () 1)", "CPL053", "macro `m`: it is used above its definition"},
@@ -123,12 +123,10 @@ const Case kCases[] = {
 
 TEST_CASE("codes: a reactive form is refused where it stands, with the way to write it") {
   const std::pair<std::string, std::string> forms[] = {
-      {"(cpl:try-all (sig) (go1))", "`try-in-order`"},
       {"(partial-order ((sig) (go1)) (:order a b))", "in a `seq`"},
-      {"(whenever (f) (sig))", "`(holds '(fluent argument...))`"},
-      {"(cpl:wait-for f)", "`(holds '(fluent argument...))`"},
+      {"(cpl:wait-for 1)", "--par=interleave"},
       {"(with-policy p (1) (sig))", "in a `progn`"},
-      {"(fl-and a b)", "`(holds '(fluent argument...))`"},
+      {"(fl-pulsed a)", "value"},
   };
   for (const auto& [form, way] : forms) {
     CAPTURE(form);
@@ -199,7 +197,7 @@ TEST_CASE("codes: unknown and reactive forms name the nearest form of the subset
   CHECK(note("(whn t 1)") == "the nearest form of the subset is `when`");
   CHECK(note("(with-failure-handlin () 1)") ==
         "the nearest form of the subset is `with-failure-handling`");
-  CHECK(note("(try-all 1 2)") == "use `try-in-order`, which tries one branch after the other");
+  CHECK(note("(with-task 1 2)") == "write the body alone, in a `progn`");
   CHECK(note("(perform (a motion (type goin)))") == "the nearest binding is motion `going`");
 }
 

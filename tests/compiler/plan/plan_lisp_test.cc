@@ -46,6 +46,71 @@ TEST_CASE("Lisp: several values go where the standard sends them") {
       "(def-cram-function task () (values 3 4))");
 }
 
+TEST_CASE("Lisp: parts of lists and designators are places") {
+  check_values({
+      {"(let ((l (list :b 1)) (v 7)) (rotatef (getf l :a 9) v) (list v (getf l :a)))", "(9 7)"},
+      {"(let ((l nil)) (list (shiftf (getf l :n 4) 5) (getf l :n)))", "(4 5)"},
+      {"(let ((l nil)) (incf (getf l :n 0)) (push 3 (getf l :m '(1))) l)", "(:n 1 :m (3 1))"},
+      {"(let ((l (list 1 2))) (push 3 (cdr (last l))) l)", "(1 2 3)"},
+      {"(let ((l (list 1 2 3))) (setf (car (last l)) 5) l)", "(1 2 5)"},
+      {"(let ((l (list (list :a 1) (list :b 2)))) (setf (cadr (find :b l :key #'car)) 5) l)",
+       "((:a 1) (:b 5))"},
+      {"(let ((l (list (list :a 1) (list :b 2)))) (incf (cadr (assoc :a l))) l)",
+       "((:a 2) (:b 2))"},
+      // Operands are computed once, in written order.
+      {"(let ((n 0) (l (list 1 2 3))) (incf (nth (incf n) l) 10) (list n l))", "(1 (1 12 3))"},
+      {"(let ((n 0) (l nil)) (incf (getf l (if (= (incf n) 1) :a :b) (incf n))) (list n l))",
+       "(2 (:a 3))"},
+      {"(let ((d (desig:a location (arm left) (n 1)))) "
+       "(setf (cadr (find :arm (desig:description d) :key #'car)) :right) (desig:properties d))",
+       "((:arm :right) (:n 1))"},
+  });
+}
+
+TEST_CASE("Lisp: texts") {
+  check_values({
+      {"(string-capitalize \"a-bc d2e\")", "\"A-Bc D2e\""},
+      {"(list (string-trim \" .\" \" a b. \") (string-left-trim \"x\" \"xxa\") "
+       "(string-right-trim \"x\" \"axx\") (string-trim \"x\" \"xx\"))",
+       "(\"a b\" \"a\" \"a\" \"\")"},
+      {"(list (string< \"ab\" \"ac\") (string< \"b\" \"a\") (string> \"b\" \"a\") "
+       "(string< \"a\" \"ab\"))",
+       "(1 nil 0 1)"},
+      {"(list (parse-integer \"12\") (parse-integer \"-3\"))", "(12 -3)"},
+      {"(handler-case (parse-integer \"1.5\") (error () 'e))", "e"},
+  });
+}
+
+TEST_CASE("Lisp: iterate") {
+  check_values({
+      {"(iter (for x in '(1 2 3)) (collect (* x x)))", "(1 4 9)"},
+      {"(iter (for i from 1 to 4) (when (oddp i) (collect i)))", "(1 3)"},
+      {"(iter (for i below 4) (with n = 10) (incf n i) (finally (return n)))", "16"},
+      {"(iterate (for (a b) in '((1 2) (3 4))) (sum (+ a b)))", "10"},
+      {"(iter (for x in-vector (vector 1 5 2)) (maximizing x))", "5"},
+      {"(iter (for x in '(1 2 3)) (finding x such-that (evenp x)))", "2"},
+      {"(let ((h (make-hash-table))) (setf (gethash 1 h) 2) "
+       "(iter (for (k v) in-hashtable h) (collect (list k v))))",
+       "((1 2))"},
+      {"(iter (for x initially 1 then (* 2 x)) (while (< x 9)) (collect x))", "(1 2 4 8)"},
+  });
+}
+
+TEST_CASE("Lisp: functions of real numbers, and types that are said") {
+  check_values({
+      {"(list (sqrt 4) (expt 2 10) (expt 2 -1) (expt 0.5 2))", "(2.0 1024 1/2 0.25)"},
+      {"(list (atan 0) (atan 0 1) (sin 0) (cos 0) (exp 0))", "(0.0 0.0 0.0 1.0 1.0)"},
+      {"(list (signum -3) (signum 0) (signum 2.5))", "(-1 0 1.0)"},
+      {"(< 3.141 (* 4 (atan 1)) 3.142)", "t"},
+      {"(the integer (+ 1 1))", "2"},
+      {"(handler-case (the string 1) (type-error () 'e))", "e"},
+      {"(the a-type-of-others 1)", "1"},
+      {"(locally (declare (optimize speed)) 1 2)", "2"},
+  });
+  check_refused({{"(sqrt -1)", "CPL008", "1:1",
+                  "`sqrt`: argument 1 is -1, not a number for which it is real and finite"}});
+}
+
 TEST_CASE("Lisp: types") {
   check_values({
       {"(mapcar #'listp '(nil (1) a))", "(t t nil)"},

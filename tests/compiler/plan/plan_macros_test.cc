@@ -132,8 +132,14 @@ TEST_CASE("macros: wrong calls and wrong macros have their place") {
       {"(defmacro m (x) `(list ,@x . 1))\n(m (2))", "CPL003", "1:18",
        "malformed `list`: a dotted list is data: quote it"},
       {"(defmacro m () 1)\n(defmacro m () 2)\n(m)", "CPL005", "2:11", "`m` is defined twice"},
-      {"(defvar *x* 1)\n(defmacro m () *x*)\n(m)", "CPL004", "2:16", "no variable `*x*` here"},
+      {"(defvar *x* (+ 1 1))\n(defmacro m () *x*)\n(m)", "CPL004", "2:16",
+       "no variable `*x*` here"},
   });
+}
+
+TEST_CASE("macros: a global that is written out is known to them") {
+  check_values({{"(m)", "(5 5)"}, {"(m :n 2)", "(2 5)"}},
+               "(defparameter *n* 5)(defmacro m (&key (n *n*)) `(list ,n *n*))");
 }
 
 TEST_CASE("macros: packages have their own") {

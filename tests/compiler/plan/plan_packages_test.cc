@@ -178,5 +178,15 @@ TEST_CASE("packages: many of them, using each other in circles, are bounded") {
   CHECK(first_error(unroll_files({wide})).find("packages inherit more than") != std::string::npos);
 }
 
+TEST_CASE("packages: a rule finds what Lisp has, whatever another package calls so") {
+  const auto plan =
+      unroll(prelude() +
+             "(in-package :mine)(defun ensure-list (x) (list x x))(in-package :cl-user)"
+             "(def-fact-group g (p) (<- (p ?x) (lisp-fun alexandria:ensure-list 1 ?x)))"
+             "(when (equal (var-value '?x (car (prolog '(p ?x)))) '(1)) (sig))");
+  CHECK(plan.codes().empty());
+  CHECK(plan.events("+") == Strings{"Signal()", "DONE"});
+}
+
 }  // namespace
 }  // namespace parallax::compiler

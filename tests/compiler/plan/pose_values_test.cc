@@ -216,6 +216,17 @@ TEST_CASE("poses: numbers that are none, and what has no direction") {
   CHECK(says("(list->pose '((1 2) (0 0 0 1)))", "three numbers and of four"));
 }
 
+TEST_CASE("poses: where a described location is, the robot knows") {
+  const auto plan =
+      unroll(prelude() +
+             "(let ((at (desig:reference (desig:a location (on (desig:an object (name table)))))))"
+             " (cl-transforms:y (cl-transforms:origin at)) (sig))");
+  CHECK(plan.codes().empty());
+  CHECK(plan.events("+") == Strings{"Signal()", "DONE"});
+  CHECK(says("(< (y (origin (reference (a location (on (an object (name table))))))) 1)",
+             "from `reference`, which only the robot knows"));
+}
+
 TEST_CASE("poses: long chains end, and come out the same twice") {
   const std::string chain =
       "(let ((tr (make-identity-transform)) (step (make-transform (make-3d-vector 0.001 0 0) "
