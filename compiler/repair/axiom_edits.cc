@@ -4,11 +4,13 @@
 #include "compiler/base/ground_name.h"
 #include "compiler/repair/edit_subject.h"
 #include "compiler/repair/idle_condition.h"
+#include "compiler/repair/number_term.h"
 #include "compiler/syntax/printer.h"
 
 namespace parallax::compiler {
 namespace {
 
+constexpr std::size_t kMostConfused = 24;  // literals of a symbol in the place of a condition
 constexpr int kDropSuperfluous = 1;  // oddity: comes before another sign, which comes behind it
 
 /// Edits of an existing axiom that may be wrong.
@@ -19,6 +21,8 @@ class AxiomEdits {
   void edit(std::size_t i) {
     if (subject_.forms[i].kind == AxiomForm::Kind::kEffects) {
       edit_effects(i);
+    } else if (subject_.forms[i].kind == AxiomForm::Kind::kLateEffects) {
+      drop(i, 3);
     } else {
       drop(i, 3);
       edit_conditions(i);
@@ -29,8 +33,7 @@ class AxiomEdits {
   /// The effects of another event that fit what differed become those of an event in the scope.
   void move_effects(std::size_t i) {
     const auto& form = subject_.forms[i];
-    const bool wide = !subject_.scope.more_fluents.empty();  // these would be most of all edits
-    if (wide || form.kind != AxiomForm::Kind::kEffects || form.effects.size() != 1) return;
+    if (form.kind != AxiomForm::Kind::kEffects || form.effects.size() != 1) return;
     const auto& tree = ast(form);
     const auto effect = form.effects.front();
     const auto parts = *effect_parts(tree, effect);
@@ -45,12 +48,22 @@ class AxiomEdits {
           subject_.typed.symbols[*symbol].kind != SymbolKind::kEvent) {
         continue;
       }
+      // Far from the steps these would be most of all edits, and chance: there the runs have to
+      // show that the other event does it, and have the one that is said to.
+      const bool wide = subject_.scope.wide;
+      const auto changed = subject_.scope.changed.find(event);
+      const bool shown = changed != subject_.scope.changed.end() &&
+                         changed->second.contains({name, kind == "Initiates"});
+      if (wide && (!shown || subject_.scope.idle.contains(form.event_symbol) || refused())) {
+        continue;
+      }
+      const auto& sorts = subject_.typed.symbols[*symbol].arguments;
       for (const auto& [term, oddity] :
-           terms(event, subject_.typed.symbols[*symbol].arguments, variables)) {
+           wide ? terms(event, sorts, variables, false) : terms(event, sorts, variables)) {
         const auto count = out_.size();
         replace(i, effect,
                 kind + "(" + term + "," + print_formula(tree, parts.fluent) + "," + form.time + ")",
-                2 + oddity);
+                (oddity == 0 && is_lonely(i) ? 0 : 2) + (wide ? 1 : 0) + oddity);
         if (out_.size() == count) continue;
         out_.back().event = event;
         out_.back().moves_effect = true;
@@ -60,6 +73,20 @@ class AxiomEdits {
 
  private:
   const Ast& ast(const AxiomForm& form) const { return subject_.model.ast(form.place); }
+
+  /// Did the world refuse an event? Then its fluents did not change by what another event does.
+  bool refused() const {
+    return std::any_of(subject_.scope.steps.begin(), subject_.scope.steps.end(),
+                       [](const auto& step) { return step.refused; });
+  }
+
+  /// Is the axiom all that the model says of an event that nothing brings about?
+  bool is_lonely(std::size_t i) const {
+    const auto& event = subject_.forms[i].event_symbol;
+    return subject_.scope.idle.contains(event) &&
+           std::count_if(subject_.forms.begin(), subject_.forms.end(),
+                         [&](const auto& form) { return form.event_symbol == event; }) == 1;
+  }
 
   std::vector<SortedVariable> sorted(const std::vector<std::string>& names,
                                      const std::string& time) const {
@@ -175,19 +202,48 @@ class AxiomEdits {
       } else if (node.kind == NodeKind::kApply) {
         replace(i, conjunct, "!" + text, 2);
       }
+      const auto variables = sorted(form.variables, form.time);
+      for (const auto& [other, oddity] :
+           other_comparisons(ast(form), conjunct, subject_.typed, variables)) {
+        replace(i, conjunct, other, oddity);
+      }
+      confuse(i, conjunct, variables);
       auto inner = negated ? ast(form).child(node, 0) : conjunct;
       if (ast(form)[inner].kind == NodeKind::kApply &&
           ast(form).name(ast(form)[inner]) == "HoldsAt") {
         for (const auto& other : other_terms(form, ast(form).child(ast(form)[inner], 0))) {
           ConditionLiteral literal{ConditionLiteral::Kind::kFluent, negated, other.symbol, {}};
           for (const auto& name : other.arguments) {
-            literal.arguments.push_back({LiteralArgument::Kind::kVariable, name});
+            const bool term = name.find_first_of("+-") != std::string::npos;
+            literal.arguments.push_back(
+                {term ? LiteralArgument::Kind::kTerm : LiteralArgument::Kind::kVariable, name});
           }
           const auto instead =
               (negated ? "!HoldsAt(" : "HoldsAt(") + other.text() + "," + form.time + ")";
           replace(i, conjunct, instead, other.oddity, std::move(literal));
         }
       }
+    }
+  }
+
+  /// Another literal takes the condition's place.
+  void confuse(std::size_t i, NodeId conjunct, const std::vector<SortedVariable>& variables) {
+    const auto& form = subject_.forms[i];
+    const auto& node = ast(form)[conjunct];
+    if (node.kind != NodeKind::kApply && node.kind != NodeKind::kUnary) return;
+    if (!subject_.scope.more_fluents.empty()) return;  // these would be most of all edits
+    const auto old = print_formula(ast(form), conjunct);
+    for (const auto& literal : condition_literals(subject_.typed, variables, kMostConfused)) {
+      if (literal.kind != ConditionLiteral::Kind::kFluent ||
+          literal.count(LiteralArgument::Kind::kConstant) > 0) {
+        continue;
+      }
+      const auto text = print(literal, form.time, form.variables);
+      if (text == old || "!" + text == old || text == "!" + old) continue;
+      const bool same = old.find("(" + literal.symbol + "(") != std::string::npos;
+      if (same || is_idle_condition(subject_.model, subject_.forms, form, text)) continue;
+      const int known = std::min(0, subject_.relevance.oddity(literal, form.event_symbol));
+      replace(i, conjunct, text, 5 + known + (literal.negated ? 1 : 0), literal);
     }
   }
 
@@ -222,13 +278,19 @@ class AxiomEdits {
       for (const auto& other : other_terms(form, parts.fluent)) {
         replace(i, effect, atom(kind, event, other.text()), other.oddity);
       }
-      for (const auto& [e, f] : exchanged(form, parts)) replace(i, effect, atom(kind, e, f), 2);
+      for (const auto& [e, f] : exchanged(form, parts)) {
+        of_other_arguments(i, effect, atom(kind, e, f), 2);
+      }
+      for (const auto& other : other_terms(form, parts.event)) {
+        of_other_arguments(i, effect, atom(kind, other.text(), fluent), other.oddity + 1);
+      }
     }
     // No recording tells what a demanded event did: an effect that did not differ is rather right.
     const int instead = !differs && subject_.scope.demanded.contains(form.event_symbol) ? 3 : 2;
     for (const auto& name : differs ? fluents_for(form.event_symbol, kind) : subject_.fluents) {
       const auto symbol = subject_.typed.find_symbol(name);
       if (!symbol || subject_.typed.symbols[*symbol].kind != SymbolKind::kFluent) continue;
+      if (subject_.typed.symbols[*symbol].noninertial) continue;
       if (tree[parts.fluent].kind == NodeKind::kApply && tree.name(tree[parts.fluent]) == name) {
         continue;
       }
@@ -238,6 +300,13 @@ class AxiomEdits {
         replace(i, effect, atom(kind, event, term), instead + oddity);
       }
     }
+  }
+
+  /// The effect of the event with other arguments.
+  void of_other_arguments(std::size_t i, NodeId effect, std::string text, int oddity) {
+    const auto count = out_.size();
+    replace(i, effect, std::move(text), oddity);
+    if (out_.size() > count) out_.back().moves_effect = true;
   }
 
   /// Fluents that a wrong effect may be about instead: those that differed, and hidden ones for
@@ -273,10 +342,18 @@ class AxiomEdits {
     return out;
   }
 
-  /// Terms of a symbol with these variables and with constants.
+  /// Terms of a symbol with these variables and with constants; without constants where that would
+  /// be too many.
   std::vector<std::pair<std::string, int>> terms(
       const std::string& symbol, const std::vector<SortId>& sorts,
       const std::vector<SortedVariable>& variables) const {
+    auto out = terms(symbol, sorts, variables, true);
+    return out.empty() ? terms(symbol, sorts, variables, false) : out;
+  }
+  std::vector<std::pair<std::string, int>> terms(const std::string& symbol,
+                                                 const std::vector<SortId>& sorts,
+                                                 const std::vector<SortedVariable>& variables,
+                                                 bool constants) const {
     std::vector<std::pair<std::string, int>> out = {{"", 0}};
     for (const auto sort : sorts) {
       std::vector<std::pair<std::string, int>> next;
@@ -287,6 +364,7 @@ class AxiomEdits {
             next.emplace_back(comma + variable.name, oddity);
           }
         }
+        if (!constants) continue;
         for (const auto& name : constants_of(subject_.typed, sort)) {
           next.emplace_back(comma + name, oddity + 2);
         }
@@ -330,6 +408,11 @@ class AxiomEdits {
           continue;
         with[i] = variable.name;
         out.push_back({name_of, with, 1});
+        if (!is_number_sort(subject_.typed, variable.sort)) continue;
+        for (const auto* step : {"+1", "-1"}) {
+          with[i] = variable.name + step;
+          if (with[i] != arguments[i]) out.push_back({name_of, with, 2});
+        }
       }
       const auto constants = constants_of(subject_.typed, sort);
       if (constants.size() > kMostLiterals) continue;

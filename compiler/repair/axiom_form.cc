@@ -77,6 +77,29 @@ bool read_effects(const Ast& ast, AxiomForm& form) {
   });
 }
 
+/// `Happens(E,time-k) & ... -> Initiates(E2,F,time) & ...`: E is the event of the form.
+bool read_late_effects(const Ast& ast, AxiomForm& form) {
+  form.effects = conjuncts_of(ast, form.head);
+  for (const auto effect : form.effects) {
+    const auto parts = effect_parts(ast, effect);
+    if (!parts || ast[parts->time].kind != NodeKind::kName) return false;
+    form.time = ast.name(ast[parts->time]);
+  }
+  for (const auto conjunct : form.conjuncts) {
+    if (!is_call(ast, conjunct, "Happens", 2)) continue;
+    const auto event = ast.child(ast[conjunct], 0);
+    const auto& time = ast[ast.child(ast[conjunct], 1)];
+    const bool earlier = time.kind == NodeKind::kBinary && time.op == Operator::kSubtract &&
+                         ast.name(ast[ast.child(time, 0)]) == form.time;
+    if (!earlier || ast[event].kind != NodeKind::kApply) continue;
+    form.kind = AxiomForm::Kind::kLateEffects;
+    form.event = event;
+    form.event_symbol = ast.name(ast[event]);
+    return true;
+  }
+  return false;
+}
+
 bool read_precondition(const Ast& ast, AxiomForm& form) {
   if (!form.condition) return false;
   for (const auto conjunct : form.conjuncts) {
@@ -95,6 +118,34 @@ bool read_trigger(const Ast& ast, AxiomForm& form) {
   return name_event(ast, ast.child(node, 0), ast.child(node, 1), form);
 }
 
+/// Is it about fluents at the time of one variable, and about nothing that happens? Sets the
+/// variable.
+bool is_about_states(const Ast& ast, NodeId root, AxiomForm& form) {
+  std::vector<NodeId> open = {root};
+  while (!open.empty()) {
+    const auto& node = ast[open.back()];
+    open.pop_back();
+    if (node.kind == NodeKind::kUnary && is_temporal(node.op)) return false;
+    if (node.kind == NodeKind::kApply && ast.name(node) == "HoldsAt") {
+      if (node.child_count != 2) return false;
+      const auto& time = ast[ast.child(node, 1)];
+      if (time.kind != NodeKind::kName) return false;
+      const std::string variable(ast.name(time));
+      if (!form.time.empty() && form.time != variable) return false;
+      form.time = variable;
+      continue;
+    }
+    if (node.kind == NodeKind::kApply) {
+      for (const auto* name : {"Happens", "Initiates", "Terminates", "Releases", "ReleasedAt",
+                               "Trajectory", "AntiTrajectory"}) {
+        if (ast.name(node) == name) return false;
+      }
+    }
+    for (std::uint32_t i = 0; i < node.child_count; ++i) open.push_back(ast.child(node, i));
+  }
+  return std::find(form.variables.begin(), form.variables.end(), form.time) != form.variables.end();
+}
+
 /// Variables, condition and head of a formula.
 AxiomForm outline(const Ast& ast, const Statement& statement) {
   AxiomForm form;
@@ -107,7 +158,7 @@ AxiomForm outline(const Ast& ast, const Statement& statement) {
     }
     node = ast.child(ast[node], count - 1);
   }
-  form.head = node;
+  form.head = form.body = node;
   if (ast[node].kind == NodeKind::kBinary && ast[node].op == Operator::kImplies) {
     form.condition = ast.child(ast[node], 0);
     form.conjuncts = conjuncts_of(ast, *form.condition);
@@ -120,11 +171,19 @@ AxiomForm read_form(const Ast& ast, const Statement& statement) {
   auto form = outline(ast, statement);
   form.kind = AxiomForm::Kind::kEffects;
   if (read_effects(ast, form)) return form;
+  form.effects.clear();
+  form.event_symbol.clear();
+  if (read_late_effects(ast, form)) return form;
+  form.effects.clear();
   form.event_symbol.clear();
   if (read_precondition(ast, form)) return form;
   form.event_symbol.clear();
   if (read_trigger(ast, form)) return form;
-  return outline(ast, statement);
+  form = outline(ast, statement);
+  auto about_states = form;
+  if (!is_about_states(ast, form.body, about_states)) return form;
+  about_states.kind = AxiomForm::Kind::kState;
+  return about_states;
 }
 
 }  // namespace
@@ -136,6 +195,18 @@ std::optional<EffectParts> effect_parts(const Ast& ast, NodeId atom) {
   }
   const auto& node = ast[atom];
   return EffectParts{ast.child(node, 0), ast.child(node, 1), ast.child(node, 2)};
+}
+
+TextExtent with_parentheses(std::string_view text, const Node& node, std::uint32_t from,
+                            std::uint32_t to) {
+  TextExtent out{node.begin, node.end};
+  while (true) {
+    auto before = out.begin, after = out.end;
+    while (before > from && is_space(text[before - 1])) --before;
+    while (after < to && is_space(text[after])) ++after;
+    if (before <= from || after >= to || text[before - 1] != '(' || text[after] != ')') return out;
+    out = {before - 1, after + 1};
+  }
 }
 
 std::uint32_t end_of_formula(std::string_view text, std::uint32_t end) {
@@ -163,6 +234,14 @@ std::vector<AxiomForm> all_forms(const ModelAst& model, const base::SourceFiles&
 }
 
 std::vector<AxiomForm> axiom_forms(const ModelAst& model, const base::SourceFiles& files) {
+  auto out = repairable_forms(model, files);
+  std::erase_if(out, [](const auto& form) {
+    return form.kind == AxiomForm::Kind::kState || form.kind == AxiomForm::Kind::kLateEffects;
+  });
+  return out;
+}
+
+std::vector<AxiomForm> repairable_forms(const ModelAst& model, const base::SourceFiles& files) {
   auto out = all_forms(model, files);
   std::erase_if(out, [](const auto& form) { return form.kind == AxiomForm::Kind::kOther; });
   return out;

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 
+#include "compiler/repair/number_term.h"
+
 namespace parallax::compiler {
 namespace {
 
 using Arguments = std::vector<LiteralArgument>;
 using Kind = LiteralArgument::Kind;
 
-/// Arguments that can stand at a place of this sort.
+/// Arguments that can stand at a place of this sort; numbers also one beside a variable.
 Arguments choices(const TypedModel& model, SortId sort,
                   const std::vector<SortedVariable>& variables, bool constants) {
   Arguments out;
@@ -18,6 +20,11 @@ Arguments choices(const TypedModel& model, SortId sort,
   out.push_back({Kind::kSome, model.sorts[sort].name});
   if (!constants) return out;
   for (auto& name : constants_of(model, sort)) out.push_back({Kind::kConstant, std::move(name)});
+  if (!is_number_sort(model, sort)) return out;
+  for (const auto& variable : variables) {
+    if (!model.sorts_overlap(variable.sort, sort)) continue;
+    for (const auto* step : {"+1", "-1"}) out.push_back({Kind::kTerm, variable.name + step});
+  }
   return out;
 }
 
@@ -68,19 +75,60 @@ void add_symbol(const TypedModel& model, const Symbol& symbol, std::vector<SortI
   }
 }
 
+void add_equation(LiteralArgument left, LiteralArgument right, bool less,
+                  std::vector<ConditionLiteral>& out) {
+  ConditionLiteral literal;
+  literal.kind = ConditionLiteral::Kind::kEqual;
+  literal.arguments = {std::move(left), std::move(right)};
+  literal.less = less;
+  // That a number is not one beside another is no condition that anybody writes.
+  const bool by_term = literal.arguments.back().kind == Kind::kTerm && !less;
+  if (by_term) {
+    out.push_back(std::move(literal));
+  } else {
+    add_both(std::move(literal), out);
+  }
+}
+
+/// Comparisons of a number with other variables, their neighbours and the values of functions.
+void add_number_comparisons(const TypedModel& model, const std::vector<SortedVariable>& variables,
+                            std::size_t i, const std::vector<std::string>& functions,
+                            std::vector<ConditionLiteral>& out) {
+  const LiteralArgument left{Kind::kVariable, variables[i].name};
+  for (const auto& term : functions) add_equation(left, {Kind::kTerm, term}, true, out);
+  for (std::size_t j = 0; j < variables.size(); ++j) {
+    if (j == i || !model.sorts_overlap(variables[i].sort, variables[j].sort)) continue;
+    add_equation(left, {Kind::kVariable, variables[j].name}, true, out);
+    add_equation(left, {Kind::kTerm, variables[j].name + "+1"}, false, out);
+    for (const auto& term : functions) {
+      for (const auto* sign : {"+", "-"}) {
+        add_equation(left, {Kind::kTerm, variables[j].name + sign + term}, false, out);
+      }
+    }
+  }
+  const auto numerals = numerals_of(model, variables[i].sort);
+  for (std::size_t k = 1; k < numerals.size(); ++k) {
+    add_equation(left, {Kind::kConstant, numerals[k]}, true, out);
+  }
+}
+
 void add_equations(const TypedModel& model, const std::vector<SortedVariable>& variables,
                    std::size_t most_each, std::vector<ConditionLiteral>& out) {
   for (std::size_t i = 0; i < variables.size(); ++i) {
     const LiteralArgument left{Kind::kVariable, variables[i].name};
     for (std::size_t j = i + 1; j < variables.size(); ++j) {
       if (!model.sorts_overlap(variables[i].sort, variables[j].sort)) continue;
-      const LiteralArgument right{Kind::kVariable, variables[j].name};
-      add_both({ConditionLiteral::Kind::kEqual, false, "", {left, right}}, out);
+      add_equation(left, {Kind::kVariable, variables[j].name}, false, out);
     }
     const auto constants = constants_of(model, variables[i].sort);
-    if (constants.size() > most_each) continue;
     for (const auto& name : constants) {
-      add_both({ConditionLiteral::Kind::kEqual, false, "", {left, {Kind::kConstant, name}}}, out);
+      if (constants.size() > most_each) break;
+      add_equation(left, {Kind::kConstant, name}, false, out);
+    }
+    const auto functions = function_terms(model, variables[i].sort, variables);
+    for (const auto& term : functions) add_equation(left, {Kind::kTerm, term}, false, out);
+    if (is_number_sort(model, variables[i].sort)) {
+      add_number_comparisons(model, variables, i, functions, out);
     }
   }
 }
@@ -95,7 +143,9 @@ std::size_t ConditionLiteral::count(LiteralArgument::Kind of) const {
 std::string print(const ConditionLiteral& literal, const std::string& time,
                   const std::vector<std::string>& taken) {
   if (literal.kind == ConditionLiteral::Kind::kEqual) {
-    return literal.arguments[0].name + (literal.negated ? "!=" : "=") + literal.arguments[1].name;
+    const auto* relation =
+        literal.less ? (literal.negated ? ">=" : "<") : (literal.negated ? "!=" : "=");
+    return literal.arguments[0].name + relation + literal.arguments[1].name;
   }
   std::string quantified, arguments;
   auto names = taken;
@@ -132,11 +182,14 @@ NarrowLiteral narrowed(const ConditionLiteral& literal, const TypedModel& model,
   if (literal.kind == ConditionLiteral::Kind::kEqual || !symbol) return out;
   for (std::size_t i = 0; i < literal.arguments.size(); ++i) {
     auto& argument = out.literal.arguments[i];
-    if (argument.kind != Kind::kVariable) continue;
-    if (std::find(taken.begin(), taken.end(), argument.name) == taken.end()) continue;
-    const auto sort = sort_of_variable(model, argument.name);
     const auto wanted = model.symbols[*symbol].arguments[i];
-    if (!sort || model.is_subsort(*sort, wanted)) continue;
+    if (argument.kind == Kind::kVariable) {
+      if (std::find(taken.begin(), taken.end(), argument.name) == taken.end()) continue;
+      const auto sort = sort_of_variable(model, argument.name);
+      if (!sort || model.is_subsort(*sort, wanted)) continue;
+    } else if (argument.kind != Kind::kTerm) {
+      continue;
+    }
     auto name = model.sorts[wanted].name;
     const auto is_taken = [&] {
       return std::find(out.names.begin(), out.names.end(), name) != out.names.end();
@@ -145,7 +198,7 @@ NarrowLiteral narrowed(const ConditionLiteral& literal, const TypedModel& model,
     out.names.push_back(name);
     out.quantified += (out.quantified.empty() ? "" : ",") + name;
     out.equations += (out.equations.empty() ? "" : " & ") + name + "=" + argument.name;
-    argument.name = name;
+    argument = {Kind::kVariable, name};
   }
   return out;
 }
@@ -172,6 +225,7 @@ ConditionLiteral renamed(ConditionLiteral literal,
   for (auto& argument : literal.arguments) {
     const auto found = names.find(argument.name);
     if (argument.kind == Kind::kVariable && found != names.end()) argument.name = found->second;
+    if (argument.kind == Kind::kTerm) argument.name = with_names(argument.name, names);
   }
   return literal;
 }
@@ -188,6 +242,8 @@ std::string atom_pattern(const ConditionLiteral& literal,
       out += argument.name;
     } else if (argument.kind == Kind::kVariable && value != values.end()) {
       out += value->second;
+    } else if (argument.kind == Kind::kTerm && number_of(argument.name, values)) {
+      out += std::to_string(*number_of(argument.name, values));
     } else {
       out += "*";
     }
@@ -237,6 +293,7 @@ std::vector<std::string> constants_of(const TypedModel& model, SortId sort) {
     const auto fits = [&](SortId of) { return model.is_subsort(of, sort); };
     if (std::any_of(object.sorts.begin(), object.sorts.end(), fits)) out.push_back(object.name);
   }
+  for (auto& number : numerals_of(model, sort)) out.push_back(std::move(number));
   return out;
 }
 

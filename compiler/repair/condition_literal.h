@@ -12,22 +12,23 @@
 
 namespace parallax::compiler {
 
-/// A variable or constant, or "there is one of this sort".
+/// A variable, a constant or numeral, "there is one of this sort", or a term over variables.
 struct LiteralArgument {
-  enum class Kind : std::uint8_t { kVariable, kConstant, kSome };
+  enum class Kind : std::uint8_t { kVariable, kConstant, kSome, kTerm };
   Kind kind = Kind::kVariable;
-  std::string name;  // name of the variable or constant, or of the sort
+  std::string name;  // name of the variable or constant, or of the sort; "count-1", "Price(item)"
   friend bool operator==(const LiteralArgument&, const LiteralArgument&) = default;
 };
 
 /// Literal that an edit may add to a condition: a fluent at the event's time, a predicate without
-/// time, or an equation, each perhaps negated.
+/// time, an equation, or a comparison of numbers (`x<y`), each perhaps negated.
 struct ConditionLiteral {
   enum class Kind : std::uint8_t { kFluent, kPredicate, kEqual };
   Kind kind = Kind::kFluent;
   bool negated = false;
   std::string symbol;  // for a fluent or predicate
   std::vector<LiteralArgument> arguments;
+  bool less = false;  // kEqual: `<` instead of `=`
   friend bool operator==(const ConditionLiteral&, const ConditionLiteral&) = default;
 
   std::size_t count(LiteralArgument::Kind of) const;
@@ -69,12 +70,14 @@ struct SortedVariable {
 std::optional<SortId> sort_of_variable(const TypedModel& model, std::string_view name);
 /// Names for variables of these sorts: "base", "item1", "item2".
 std::vector<std::string> variables_for(const TypedModel& model, const std::vector<SortId>& sorts);
-/// The constants of a sort and of all sorts below it, in order of declaration.
+/// The constants of a sort and of all sorts below it, in order of declaration; the numerals of a
+/// sort of few numbers.
 std::vector<std::string> constants_of(const TypedModel& model, SortId sort);
 
 /// Every literal over the model's fluents and predicates with these variables, constants, and
-/// places that are left open; equations between variables, and between one and a constant. Terms
-/// are not nested. Symbols with more than `most_each` literals have none with constants.
+/// places that are left open; equations between variables, and between one and a constant or the
+/// value of a function; of numbers also `x<y` and `x=y+1`. Symbols with more than `most_each`
+/// literals have none with constants.
 std::vector<ConditionLiteral> condition_literals(const TypedModel& model,
                                                  const std::vector<SortedVariable>& variables,
                                                  std::size_t most_each);

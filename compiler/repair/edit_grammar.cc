@@ -15,6 +15,7 @@ namespace parallax::compiler {
 namespace {
 
 constexpr int kDelayOddity = 2;
+constexpr std::size_t kLatest = 3;  // steps
 
 bool is_of_a_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
@@ -121,6 +122,52 @@ void add_delays(const ModelAst& model, const TypedModel& typed, const std::vecto
   }
 }
 
+/// Effects that the model says to come late: `Happens(E,time-k) & condition ->
+/// Initiates(E2,F,time)` becomes `condition -> Initiates(E,F,time)`. Appends to `edits`.
+void add_hastes(const EditSubject& subject, std::vector<Edit>& edits) {
+  for (std::size_t i = 0; i < subject.forms.size(); ++i) {
+    const auto& form = subject.forms[i];
+    if (form.kind != AxiomForm::Kind::kLateEffects || !subject.events.contains(form.event_symbol)) {
+      continue;
+    }
+    const auto& ast = subject.model.ast(form.place);
+    const auto parts = effect_parts(ast, form.effects.front());
+    const auto event = print_formula(ast, form.event);
+    Edit edit;
+    edit.kind = Edit::Kind::kDelay;
+    edit.axioms = {i};
+    edit.event = form.event_symbol;
+    edit.oddity = kDelayOddity;
+    edit.words = "comes at once";
+    Edit::Sentence now;
+    std::string gone;  // the variable of the event that comes later
+    if (ast[parts->event].kind == NodeKind::kName) gone = ast.name(ast[parts->event]);
+    for (const auto& variable : form.variables) {
+      if (variable != gone) now.variables.push_back(variable);
+    }
+    for (const auto conjunct : form.conjuncts) {
+      const auto& node = ast[conjunct];
+      if (node.kind == NodeKind::kApply && ast.name(node) == "Happens") continue;
+      auto text = print_formula(ast, conjunct);
+      if (node.kind != NodeKind::kApply && node.kind != NodeKind::kUnary) text = "(" + text + ")";
+      for (std::size_t k = 1; k <= kLatest; ++k) {
+        const auto earlier = form.time + "-" + std::to_string(k);
+        for (auto at = text.find(earlier); at != std::string::npos; at = text.find(earlier)) {
+          text.replace(at, earlier.size(), form.time);
+        }
+      }
+      now.condition += (now.condition.empty() ? "" : " & ") + text;
+    }
+    for (const auto effect : form.effects) {
+      const auto each = effect_parts(ast, effect);
+      now.effect += (now.effect.empty() ? "" : " & ") + std::string(ast.name(ast[effect])) + "(" +
+                    event + "," + print_formula(ast, each->fluent) + "," + form.time + ")";
+    }
+    edit.sentences.push_back(std::move(now));
+    edits.push_back(std::move(edit));
+  }
+}
+
 EditSubject subject_of(const ModelAst& model, const TypedModel& typed,
                        const std::vector<AxiomForm>& forms, const EditScope& scope) {
   EditSubject out{model,
@@ -170,6 +217,10 @@ std::vector<Edit> edits_in_scope(const ModelAst& model, const TypedModel& typed,
   }
   add_axiom_edits(subject, out);
   add_event_edits(subject, out);
+  add_triggers(subject, out);
+  add_state_edits(subject, out);
+  add_counter_effects(subject, out);
+  add_hastes(subject, out);
   add_delays(model, typed, forms, scope, out);
   add_effect_bundles(model, typed, forms, scope, out);
   return out;

@@ -25,9 +25,11 @@ struct Edit {
     kDropAxiom,      // an axiom about effects, or a precondition
     kReplace,        // `node` of the axiom, a conjunct or an effect, becomes `text` (`literal`)
     kAddEffect,      // a new axiom: the effect `text`
+    kAddTrigger,     // a new axiom: an event that no axiom demands happens where `given` holds
     kAddCondition,   // `literal` is the condition of the new axiom `of`
-    kDelay,          // the effect comes later: `sentences` instead of the axiom
+    kDelay,          // the effect comes later, or at once: `sentences` instead of the axiom
     kOpenEvent,      // the effects `nodes`, one of each axiom, become Releases
+    kRewrite,        // a formula about states becomes `text`; of its file `change` is made
   };
   /// `[variables] condition -> effect.`
   struct Sentence {
@@ -41,15 +43,20 @@ struct Edit {
   std::optional<ConditionLiteral> literal;
   std::optional<ConditionLiteral> or_else;  // kNarrowEvent: it is enough that this holds
   std::string text;
-  std::string event;                    // symbol
-  std::vector<std::string> variables;   // of a new axiom: the event's arguments, then others
-  std::size_t event_arity = 0;          // of a new axiom
-  std::size_t of = 0;                   // kAddCondition: the edit with the effect
-  std::vector<ConditionLiteral> given;  // kAddEffect: conditions that it has in any case
-  std::string words;                    // kAddEffect of several effects: "ends `F` and begins `G`"
-  std::vector<Sentence> sentences;      // kDelay
-  bool names_constants = false;         // kAddEffect: in the place of variables
-  bool moves_effect = false;            // kReplace: the effect becomes one of another event
+  TextChange change;                   // kRewrite
+  std::string event;                   // symbol
+  std::vector<std::string> variables;  // of a new axiom: the event's arguments, then others
+  std::size_t event_arity = 0;         // of a new axiom
+  std::size_t of = 0;                  // kAddCondition: the edit with the effect
+  /// kAddEffect, kAddTrigger: conditions that it has in any case
+  std::vector<ConditionLiteral> given;
+  /// kAddEffect of several effects: "ends `F` and begins `G`"; kRewrite: "without `F`";
+  /// kDelay: empty where the effect comes later
+  std::string words;
+  std::vector<Sentence> sentences;  // kDelay
+  bool names_constants = false;     // kAddEffect: in the place of variables
+  bool moves_effect = false;        // kReplace: of another event, or of one with other arguments
+  bool frees = false;               // leaves open what a definition said
   /// Distance from what people usually write and forget: constants where a variable would do, a
   /// condition that no other axiom of the event has. Smaller is tried first among equals.
   int oddity = 0;
@@ -70,6 +77,7 @@ struct EditScope {
       std::set<std::string> fluents;
     };
     std::vector<Late> late = {};
+    std::map<std::string, bool> after = {};  // all fluents observed after it
   };
   std::vector<Step> steps;
   /// Events of the same symbols that did what the model says, with what was seen before each.
@@ -86,10 +94,15 @@ struct EditScope {
   std::set<std::string> more_events, more_fluents;
   /// Events that axioms of the model demand: some of `more_events`.
   std::set<std::string> demanded;
+  /// Events that have effects in the model, and that neither a recorded run nor an axiom brings
+  /// about: they may lack a trigger.
+  std::set<std::string> idle;
   /// The effects of an event may be left open: `Releases`.
   bool open_outcomes = false;
   /// The same for an event that the world refused, though it can happen.
   bool open_refused = false;
+  /// Far from the steps: few edits of formulas about states.
+  bool wide = false;
   /// Only conditions that are disjunctions of two: `!Outside(spot) | DoorOpen()`.
   bool alternatives = false;
 };

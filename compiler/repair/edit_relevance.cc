@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "compiler/base/ground_name.h"
+#include "compiler/repair/number_term.h"
 
 namespace parallax::compiler {
 namespace {
@@ -34,16 +35,7 @@ bool could_be(const ConditionLiteral& literal, bool value, const Values& values,
               const std::map<std::string, bool>& state) {
   if (literal.kind == ConditionLiteral::Kind::kPredicate) return true;
   if (literal.kind == ConditionLiteral::Kind::kEqual) {
-    const auto text = [&](const LiteralArgument& argument) {
-      const auto found = values.find(argument.name);
-      return found == values.end() ? argument.name : found->second;
-    };
-    for (const auto& argument : literal.arguments) {
-      if (argument.kind == LiteralArgument::Kind::kVariable && !values.contains(argument.name)) {
-        return true;
-      }
-    }
-    return ((text(literal.arguments[0]) == text(literal.arguments[1])) != literal.negated) == value;
+    return compares(literal, values).value_or(value) == value;
   }
   const auto pattern = atom_pattern(literal, values);
   bool some_true = false, some_false = false, seen = false;
@@ -90,6 +82,13 @@ bool EditRelevance::in_some_step(const ConditionLiteral& literal, bool value,
   });
 }
 
+bool EditRelevance::around_some_step(const ConditionLiteral& literal, bool value,
+                                     bool after) const {
+  return std::any_of(scope_.steps.begin(), scope_.steps.end(), [&](const auto& step) {
+    return could_be(literal, value, {}, after ? step.after : step.before);
+  });
+}
+
 bool EditRelevance::in_some_success(const ConditionLiteral& literal,
                                     const std::vector<std::string>& arguments,
                                     const std::string& symbol,
@@ -125,6 +124,7 @@ bool EditRelevance::covers(const std::string& kind, const std::string& event,
 
 int EditRelevance::oddity(const ConditionLiteral& literal, const std::string& event) const {
   int out = static_cast<int>(2 * literal.count(LiteralArgument::Kind::kConstant) +
+                             literal.count(LiteralArgument::Kind::kTerm) +
                              literal.count(LiteralArgument::Kind::kSome));
   // Two variables of one sort are as a rule to be told apart.
   const bool tells_apart = literal.kind == ConditionLiteral::Kind::kEqual && literal.negated;

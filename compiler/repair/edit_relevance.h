@@ -20,6 +20,9 @@ class EditRelevance {
   bool in_some_step(const ConditionLiteral& literal, bool value,
                     const std::vector<std::string>& arguments, const std::string& symbol,
                     const std::vector<std::string>& variables) const;
+  /// Could the literal have been `value` in front of one of the steps, or `after` it, for some
+  /// values of its variables?
+  bool around_some_step(const ConditionLiteral& literal, bool value, bool after) const;
   /// Could the literal have held in front of an event of this symbol that did what the model says?
   bool in_some_success(const ConditionLiteral& literal, const std::vector<std::string>& arguments,
                        const std::string& symbol, const std::vector<std::string>& variables) const;

@@ -29,6 +29,14 @@ void add_axiom_edits(const EditSubject& subject, std::vector<Edit>& edits);
 /// Appends edits of the events themselves: conditions of everything that one does, preconditions,
 /// effects that are missing or left open.
 void add_event_edits(const EditSubject& subject, std::vector<Edit>& edits);
+/// Appends triggers of idle events (EditScope) with an effect on a fluent that differed.
+void add_triggers(const EditSubject& subject, std::vector<Edit>& edits);
+/// Appends edits of formulas about states, constraints and definitions: one is dropped or weakened,
+/// gains or loses a condition, or has another argument.
+void add_state_edits(const EditSubject& subject, std::vector<Edit>& edits);
+/// Appends effects on fluents with a number, `HoldsAt(F(count1),time) & count2=count1+1 ->
+/// Initiates(E,F(count2),time)`, where a step changed the number.
+void add_counter_effects(const EditSubject& subject, std::vector<Edit>& edits);
 /// Appends conditions of which one of two is enough, for everything that an event does and for each
 /// of the effects that differed: likelier ones first, and not all.
 void add_alternatives(const EditSubject& subject, std::vector<Edit>& edits);

@@ -10,25 +10,6 @@
 namespace parallax::compiler {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
-struct TextExtent {
-  std::uint32_t begin = 0, end = 0;
-};
-
-/// The node with the parentheses around it, inside [from, to).
-TextExtent with_parentheses(std::string_view text, const Node& node, std::uint32_t from,
-                            std::uint32_t to) {
-  TextExtent out{node.begin, node.end};
-  while (true) {
-    auto before = out.begin, after = out.end;
-    while (before > from && is_blank(text[before - 1])) --before;
-    while (after < to && is_blank(text[after])) ++after;
-    if (before <= from || after >= to || text[before - 1] != '(' || text[after] != ')') return out;
-    out = {before - 1, after + 1};
-  }
-}
-
 /// The blanks that the line of `at` begins with.
 std::string indentation(std::string_view text, std::uint32_t at) {
   auto begin = at;
@@ -92,6 +73,13 @@ std::vector<TextChange> without_nesting(std::vector<TextChange> changes) {
     if (!inside[i]) out.push_back(std::move(changes[i]));
   }
   return out;
+}
+
+/// Cuts a formula that is named beside its place.
+std::string shortened(std::string formula) {
+  constexpr std::size_t kMost = 90;
+  if (formula.size() <= kMost) return formula;
+  return formula.substr(0, kMost) + "...";
 }
 
 /// The event of a new axiom.
@@ -207,17 +195,33 @@ TextChange EditText::add_axiom(const std::string& event, std::string text) const
     if (statement.kind != StatementKind::kConstructor || tree.text(statement.name) != event) {
       continue;
     }
-    const ModelAst::Place* last = &place;
-    for (const auto& other : model_.order) {
-      if (other.file == place.file) last = &other;
-    }
-    const auto whole = files_[tree.file()].text();
+    const auto* last = last_statement(place);
+    const auto whole = files_[model_.ast(*last).file()].text();
     const auto& end = model_.statement(*last);
     const auto at = end.kind == StatementKind::kFormula ? end_of_formula(whole, end.source.end)
                                                         : end.source.end;
-    return {tree.file(), at, at, "\n\n" + text};
+    return {model_.ast(*last).file(), at, at, "\n\n" + text};
   }
   return {};
+}
+
+/// The last statement of the file of `place`; if that file is shared, the last formula about
+/// events, or else any statement, in one that is not.
+const ModelAst::Place* EditText::last_statement(const ModelAst::Place& place) const {
+  const auto is_shared = [&](const ModelAst::Place& at) {
+    return shared_.contains(model_.ast(at).file().index());
+  };
+  const ModelAst::Place* own = &place;
+  const ModelAst::Place* other_file = nullptr;
+  for (const auto& other : model_.order) {
+    if (other.file == place.file) own = &other;
+    if (!model_.files[other.file].built_in && !is_shared(other)) other_file = &other;
+  }
+  if (!is_shared(place)) return own;
+  for (const auto& form : forms_) {
+    if (!form.event_symbol.empty() && !is_shared(form.place)) other_file = &form.place;
+  }
+  return other_file != nullptr ? other_file : own;
 }
 
 std::string EditText::new_axiom(const Edit& effect, const std::vector<std::size_t>& chosen,
@@ -270,6 +274,7 @@ std::vector<TextChange> EditText::changes(const std::vector<std::size_t>& chosen
         break;
       }
       case Edit::Kind::kAddEffect:
+      case Edit::Kind::kAddTrigger:
         out.push_back(add_axiom(edit.event, new_axiom(edit, chosen, i, true)));
         break;
       case Edit::Kind::kDelay: {
@@ -282,6 +287,9 @@ std::vector<TextChange> EditText::changes(const std::vector<std::size_t>& chosen
         out.push_back({ast(edit.axioms.front()).file(), form.begin, form.end, std::move(text)});
         break;
       }
+      case Edit::Kind::kRewrite:
+        out.push_back(edit.change);
+        break;
       case Edit::Kind::kOpenEvent:
         for (const auto& [axiom, node] : edit.nodes) {
           const auto& tree = ast(axiom);
@@ -303,7 +311,10 @@ std::string EditText::words(const std::vector<std::size_t>& chosen) const {
     const auto event = edit.event + "(" + list(edit.variables) + ")";
     const auto axiom = [&] {
       const auto& tree = ast(edit.axioms.front());
-      return fmt::format("`{}` ({})", print_formula(tree, forms_[edit.axioms.front()].head),
+      const auto& form = forms_[edit.axioms.front()];
+      const bool of_states = form.kind == AxiomForm::Kind::kState;
+      return fmt::format("`{}` ({})",
+                         shortened(print_formula(tree, of_states ? form.body : form.head)),
                          place(edit.axioms.front()));
     };
     const auto node = [&] { return print_formula(ast(edit.axioms.front()), edit.node); };
@@ -348,12 +359,28 @@ std::string EditText::words(const std::vector<std::size_t>& chosen) const {
                 : fmt::format("`{}` {}, effects that are missing: `{}`", of_event(edit), edit.words,
                               new_axiom(edit, chosen, i, false)));
         break;
-      case Edit::Kind::kDelay:
-        for (const auto& late : edit.sentences) {
-          out.push_back(fmt::format("{} comes later, with what happens then: `{} -> {}`", axiom(),
-                                    late.condition, late.effect));
-        }
+      case Edit::Kind::kAddTrigger:
+        out.push_back(fmt::format("a trigger is missing: `{}`", new_axiom(edit, chosen, i, false)));
         break;
+      case Edit::Kind::kRewrite:
+        out.push_back(fmt::format("{} {}", axiom(), edit.words));
+        break;
+      case Edit::Kind::kDelay: {
+        const auto& first = edit.sentences.front();
+        if (!edit.words.empty()) {
+          out.push_back(fmt::format("{} {}: `{}{}{}`", axiom(), edit.words,
+                                    shortened(first.condition),
+                                    first.condition.empty() ? "" : " -> ", first.effect));
+          break;
+        }
+        out.push_back(fmt::format(
+            "{} comes later, with what happens then: `{} -> {}`{}", axiom(),
+            shortened(first.condition), first.effect,
+            edit.sentences.size() > 1
+                ? fmt::format(", and likewise for {} more events", edit.sentences.size() - 1)
+                : ""));
+        break;
+      }
       case Edit::Kind::kOpenEvent:
         out.push_back(fmt::format("what `{}` does is open: `Releases` in {} of its axioms", event,
                                   edit.axioms.size()));

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compiler/repair/axiom_form.h"
@@ -16,9 +19,12 @@ inline constexpr std::size_t kLineWidth = 100;
 /// it.
 class EditText {
  public:
+  /// `shared`: files, by number, that a world reads as well. The first axiom of an event is not
+  /// written there if the model has another file.
   EditText(const ModelAst& model, const base::SourceFiles& files,
-           const std::vector<AxiomForm>& forms, const std::vector<Edit>& edits)
-      : model_(model), files_(files), forms_(forms), edits_(edits) {}
+           const std::vector<AxiomForm>& forms, const std::vector<Edit>& edits,
+           std::set<std::uint32_t> shared = {})
+      : model_(model), files_(files), forms_(forms), edits_(edits), shared_(std::move(shared)) {}
 
   /// Changes as few characters as possible; a new axiom stands after the last one of its event.
   std::vector<TextChange> changes(const std::vector<std::size_t>& chosen) const;
@@ -33,6 +39,7 @@ class EditText {
   TextChange drop_condition(std::size_t axiom, NodeId node) const;
   TextChange drop_axiom(std::size_t axiom) const;
   TextChange add_axiom(const std::string& event, std::string text) const;
+  const ModelAst::Place* last_statement(const ModelAst::Place& place) const;
   std::string new_axiom(const Edit& effect, const std::vector<std::size_t>& chosen,
                         std::size_t number, bool wrapped) const;
 
@@ -40,6 +47,7 @@ class EditText {
   const base::SourceFiles& files_;
   const std::vector<AxiomForm>& forms_;
   const std::vector<Edit>& edits_;
+  const std::set<std::uint32_t> shared_;
 };
 
 /// Literals that an edit adds to the condition of one of its axioms, whose event may have other

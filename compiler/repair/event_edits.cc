@@ -196,6 +196,17 @@ class EventEdits {
                       const std::vector<std::string>& names) {
     std::vector<SortedVariable> own;
     for (std::size_t i = 0; i < arity; ++i) own.push_back({names[i], sorts[i]});
+    auto choices = arguments_for(own, arity, sorts, names, true);
+    if (choices.empty()) choices = arguments_for(own, arity, sorts, names, false);
+    for (const auto& choice : choices) add_effect(kind, event, arity, fluent, sorts, names, choice);
+  }
+
+  /// Empty: there are too many.
+  std::vector<std::vector<std::string>> arguments_for(const std::vector<SortedVariable>& own,
+                                                      std::size_t arity,
+                                                      const std::vector<SortId>& sorts,
+                                                      const std::vector<std::string>& names,
+                                                      bool constants) const {
     std::vector<std::vector<std::string>> choices = {{}};
     for (std::size_t i = arity; i < sorts.size(); ++i) {
       std::vector<std::vector<std::string>> next;
@@ -208,12 +219,13 @@ class EventEdits {
           if (subject_.typed.sorts_overlap(variable.sort, sorts[i])) add(variable.name);
         }
         add(names[i]);
+        if (!constants) continue;
         for (const auto& name : constants_of(subject_.typed, sorts[i])) add(name);
       }
       choices = std::move(next);
-      if (choices.size() > 4 * kMostLiterals) return;
+      if (choices.size() > 4 * kMostLiterals) return {};
     }
-    for (const auto& choice : choices) add_effect(kind, event, arity, fluent, sorts, names, choice);
+    return choices;
   }
 
   void add_effect(const std::string& kind, const std::string& event, std::size_t arity,
@@ -227,9 +239,10 @@ class EventEdits {
     edit.variables = of_event;
     edit.event_arity = arity;
     edit.oddity = kind == "Releases" ? 4 : 2;
-    // Beside events that the model demands, one that does nothing in it is an odd cause.
+    // Beside events that the model demands, or could, one that does nothing in it is an odd cause.
     const auto& demanded = subject_.scope.demanded;
-    if (!demanded.empty() && !demanded.contains(event) && effects_of(event).empty()) {
+    if (!(demanded.empty() && subject_.scope.idle.empty()) && !demanded.contains(event) &&
+        effects_of(event).empty()) {
       edit.oddity += 2;
     }
     std::vector<SortedVariable> variables;

@@ -1,6 +1,7 @@
 #include "compiler/repair/guarded_model.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "compiler/repair/edit_text.h"
@@ -46,12 +47,19 @@ class GuardedForm {
     const auto quantifier = form_.variables.empty() ? "" : "[" + list_of(form_.variables) + "] ";
     auto conditions = guarded_conditions();
     for (const auto i : touching_) {
-      const bool goes =
-          edits_[i].kind == Edit::Kind::kDropAxiom || edits_[i].kind == Edit::Kind::kDelay;
+      const bool goes = edits_[i].kind == Edit::Kind::kDropAxiom ||
+                        edits_[i].kind == Edit::Kind::kDelay ||
+                        edits_[i].kind == Edit::Kind::kRewrite;
       if (goes) conditions.push_back("!" + on(i));
     }
     if (form_.kind != AxiomForm::Kind::kEffects) {
-      return quantifier + joined(conditions, "(" + print_formula(ast, form_.head) + ")") + ".\n";
+      auto kept =
+          quantifier + joined(conditions, "(" + print_formula(ast, form_.head) + ")") + ".\n";
+      for (const auto i : touching_) {
+        if (edits_[i].kind != Edit::Kind::kRewrite) continue;
+        kept += quantifier + on(i) + " -> (" + edits_[i].text + ").\n";
+      }
+      return kept;
     }
     std::string out;
     if (conditions.size() > 1 && replaces_effects()) conditions = {share(conditions, out)};
@@ -171,8 +179,11 @@ class GuardedForm {
       return std::nullopt;
     }
     for (std::uint32_t i = 0; i < ast[node].child_count; ++i) {
+      const auto argument = ast.child(ast[node], i);
+      const bool term = ast[argument].kind == NodeKind::kBinary;
       out.arguments.push_back(
-          {LiteralArgument::Kind::kVariable, print_formula(ast, ast.child(ast[node], i))});
+          {term ? LiteralArgument::Kind::kTerm : LiteralArgument::Kind::kVariable,
+           print_formula(ast, argument)});
     }
     return out;
   }
@@ -198,6 +209,28 @@ class GuardedForm {
   std::vector<std::size_t> touching_;
 };
 
+/// An event with new triggers alone does not happen without them: what an axiom can demand is free
+/// to happen.
+std::string only_if_triggered(const std::vector<Edit>& edits) {
+  std::map<std::string, std::string> by_event;  // "[a,time] Happens(E(a),time) -> ..."
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    const auto& edit = edits[i];
+    if (edit.kind != Edit::Kind::kAddTrigger) continue;
+    auto& text = by_event[edit.event];
+    if (!text.empty()) {
+      text += " | " + on(i);
+      continue;
+    }
+    auto variables = edit.variables;
+    variables.emplace_back("time");
+    text = "[" + list_of(variables) + "] Happens(" + edit.event + "(" + list_of(edit.variables) +
+           "),time) -> " + on(i);
+  }
+  std::string out;
+  for (const auto& [event, text] : by_event) out += text + ".\n";
+  return out;
+}
+
 }  // namespace
 
 std::string edit_predicate(std::size_t edit) { return "RepairEdit" + std::to_string(edit); }
@@ -219,11 +252,13 @@ std::string guarded_text(const ModelAst& model, const TypedModel& typed,
   for (std::size_t i = 0; i < edits.size(); ++i) {
     const auto& edit = edits[i];
     for (const auto& late : edit.sentences) {
-      out += "[" + list_of(late.variables) + "] " + joined({on(i), late.condition}, late.effect) +
-             ".\n";
+      std::vector<std::string> when = {on(i)};
+      if (!late.condition.empty()) when.push_back(late.condition);
+      out += "[" + list_of(late.variables) + "] " + joined(when, late.effect) + ".\n";
     }
     const bool requires_it = edit.kind == Edit::Kind::kRequire;
-    if (!requires_it && edit.kind != Edit::Kind::kAddEffect) continue;
+    const bool adds = edit.kind == Edit::Kind::kAddEffect || edit.kind == Edit::Kind::kAddTrigger;
+    if (!requires_it && !adds) continue;
     const std::vector<std::string> of_event(
         edit.variables.begin(),
         edit.variables.begin() + static_cast<std::ptrdiff_t>(edit.event_arity));
@@ -246,7 +281,7 @@ std::string guarded_text(const ModelAst& model, const TypedModel& typed,
     }
     out += "[" + list_of(variables) + "] " + joined(conditions, effect) + ".\n";
   }
-  return out;
+  return out + only_if_triggered(edits);
 }
 
 }  // namespace parallax::compiler

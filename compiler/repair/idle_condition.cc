@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include "compiler/repair/condition_literal.h"
 #include "compiler/syntax/printer.h"
 
 namespace parallax::compiler {
@@ -21,15 +24,57 @@ bool is_released(const ModelAst& model, const std::vector<AxiomForm>& forms,
   });
 }
 
+/// "!A" for "A" and the other way round, "x!=y" for "x=y", "x>=y" for "x<y".
+std::string opposite_of(const std::string& condition) {
+  constexpr std::pair<std::string_view, std::string_view> kRelations[] = {
+      {"!=", "="}, {">=", "<"}, {"<", ">="}, {"=", "!="}};
+  if (condition.starts_with('!')) return condition.substr(1);
+  for (const auto& [sign, other] : kRelations) {
+    const auto at = condition.find(sign);
+    if (condition.ends_with(')') || at == std::string::npos) continue;
+    return condition.substr(0, at) + std::string(other) + condition.substr(at + sign.size());
+  }
+  return '!' + condition;
+}
+
+/// Is `condition` that there is one of what `text` names, as `HoldsAt(F(a),time)` does for
+/// `({x} HoldsAt(F(x),time))`?
+bool implies_some(const std::string& text, const std::string& condition) {
+  if (!condition.starts_with("({")) return false;
+  const auto close = condition.find("} ");
+  if (close == std::string::npos) return false;
+  std::vector<std::string> open;
+  for (std::size_t at = 2; at < close;) {
+    const auto end = std::min(condition.find(',', at), close);
+    open.push_back(condition.substr(at, end - at));
+    at = end + 1;
+  }
+  const auto inner = condition.substr(close + 2, condition.size() - close - 3);
+  // The places of the quantified variables are open.
+  std::string pattern;
+  for (std::size_t i = 0; i < inner.size();) {
+    auto end = i;
+    while (end < inner.size() && inner[end] != '(' && inner[end] != ')' && inner[end] != ',') ++end;
+    const auto word = inner.substr(i, end - i);
+    pattern += std::find(open.begin(), open.end(), word) == open.end() ? word : "*";
+    if (end < inner.size()) pattern += inner[end++];
+    i = end;
+  }
+  return matches(text, pattern);
+}
+
 }  // namespace
 
 bool is_idle_condition(const ModelAst& model, const std::vector<AxiomForm>& forms,
                        const AxiomForm& axiom, const std::string& condition) {
   const auto& ast = model.ast(axiom.place);
-  const auto opposite = condition.starts_with('!') ? condition.substr(1) : '!' + condition;
+  const auto opposite = opposite_of(condition);
   for (const auto conjunct : axiom.conjuncts) {
     const auto text = print_formula(ast, conjunct);
-    if (text == condition || text == opposite) return true;
+    if (text == condition || text == opposite || implies_some(text, condition) ||
+        implies_some(text, opposite)) {
+      return true;
+    }
   }
   if (axiom.effects.size() != 1) return false;
   const auto effect = axiom.effects.front();

@@ -74,6 +74,8 @@ class ModelMutator {
           mutate_conditions(i);
           break;
         case AxiomForm::Kind::kTrigger:
+        case AxiomForm::Kind::kLateEffects:
+        case AxiomForm::Kind::kState:
         case AxiomForm::Kind::kOther:
           mutate_other(i);
           break;

@@ -112,10 +112,16 @@ TraceLine trace_line_of(const Json& object, const std::shared_ptr<compiler::Symb
   }
   std::vector<std::vector<std::string>> holds;
   for (const auto& fluents : list(object, "holds")) holds.push_back(strings(fluents, "holds"));
-  std::vector<std::string> events;
+  std::vector<std::vector<std::string>> events;
   for (const auto& event : list(object, "events")) {
-    events.push_back(get<std::string>(event, "event"));
+    auto& happening = events.emplace_back();
+    happening.push_back(get<std::string>(event, "event"));
     trace->plan.push_back({get<std::string>(event, "source"), {}});
+    if (event.contains("demanded")) {
+      trace->plan.back().event = happening.front();
+      const auto demanded = strings(field(event, "demanded"), "demanded");
+      happening.insert(happening.end(), demanded.begin(), demanded.end());
+    }
     line.calls.push_back({get<std::string>(event, "controller"),
                           state_of(field(event, "arguments"), "arguments"),
                           duration_of(event, "time_limit_s")});
@@ -124,7 +130,7 @@ TraceLine trace_line_of(const Json& object, const std::shared_ptr<compiler::Symb
     throw Foreign{"`holds` has not one list for every timepoint of its events"};
   }
   for (std::size_t t = 0; t < holds.size(); ++t) {
-    const auto happens = std::span(events).subspan(t, t < events.size() ? 1 : 0);
+    const auto happens = t < events.size() ? events[t] : std::vector<std::string>();
     trace->points.push_back(runtime::point_of_names(holds[t], happens, *symbols));
   }
   line.trace = std::move(trace);
@@ -298,6 +304,12 @@ std::string encode(const TraceLine& line) {
   auto events = OrderedJson::array();
   for (std::size_t t = 0; t < trace.event_count(); ++t) {
     auto event = event_json<OrderedJson>(trace, t);
+    if (!trace.plan[t].event.empty()) {
+      auto& demanded = event["demanded"] = OrderedJson::array();
+      for (const auto name : trace.happens(t)) {
+        if (name != trace.event(t)) demanded.push_back(std::string(name));
+      }
+    }
     event.update(json_of(line.calls[t]));
     events.push_back(std::move(event));
   }

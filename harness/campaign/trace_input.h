@@ -19,17 +19,22 @@ namespace parallax::harness {
 struct PlannedEvent {
   std::string source;  // "fetch.lisp:4"; empty without a plan
   State arguments;     // override the action's own: target.x, target.y, ...
+  /// The performed event, where axioms of the model demand others at the same time, which belong to
+  /// the prediction. Empty: there is only one.
+  std::string event = {};
 };
 
-/// A trace as the campaign simulates, records and reports it: exactly one event leads from each
-/// timepoint to the next.
+/// A trace as the campaign simulates, records and reports it: exactly one event is performed
+/// between each timepoint and the next.
 struct CampaignTrace : runtime::Trace {
   std::string key;                 // stable text that names the trace, part of every draw's key
   std::vector<PlannedEvent> plan;  // by event
 
   std::size_t event_count() const { return plan.size(); }
   /// Printed without blanks: "Go(r2)".
-  const std::string& event(std::size_t t) const { return symbols->name(points[t].happens.front()); }
+  const std::string& event(std::size_t t) const {
+    return plan[t].event.empty() ? symbols->name(points[t].happens.front()) : plan[t].event;
+  }
   /// All events: "Go(r2) PickUp()".
   std::string events() const {
     std::string out;

@@ -139,16 +139,34 @@ Outcome ModelSimulator::reset(const State& initial, std::uint64_t seed) {
   const auto starts =
       found.is_complete() ? grouped(found.found, 0) : Answer{found.end, {}, limits_.states};
   if (starts.end != WindowEnd::kComplete) return no_list(starts, "initial states that fit a start");
-  if (starts.states.empty()) {
-    return {SimStatus::kInvalidStart,
-            fmt::format("`{}` has no execution that starts with {}", world_->name,
-                        fmt::join(said, ", ")),
-            0.0,
-            {}};
-  }
+  if (starts.states.empty()) return {SimStatus::kInvalidStart, no_start(given, said), 0.0, {}};
   move_to(starts.states);
   timepoint_ = 0;
   return {};
+}
+
+/// Why the world has no such start: facts of it that no execution has together, none too many.
+std::string ModelSimulator::no_start(std::vector<Literal> given, std::vector<std::string> said) {
+  const auto& model = world_->model;
+  const bool known = given.size() == said.size();  // a fluent that never holds has no literal
+  std::vector<Literal> at_start;
+  for (const auto literal : given) {
+    const auto slot = static_cast<std::uint32_t>(literal.var()) - 1;
+    const auto first = Literal::positive(model.variable(slot, 0));
+    at_start.push_back(literal.is_positive() ? first : ~first);
+  }
+  for (std::size_t i = 0; known && i < at_start.size();) {
+    auto without = at_start;
+    without.erase(without.begin() + static_cast<std::ptrdiff_t>(i));
+    if (whole_.solve(model.horizon, without) == runtime::SolveStatus::kUnsatisfiable) {
+      at_start = std::move(without);
+      said.erase(said.begin() + static_cast<std::ptrdiff_t>(i));
+    } else {
+      ++i;
+    }
+  }
+  return fmt::format("`{}` has no execution that starts with {}", world_->name,
+                     fmt::join(said, ", "));
 }
 
 runtime::SolveStatus ModelSimulator::goes_on(const runtime::Bits& state, compiler::Timepoint t) {

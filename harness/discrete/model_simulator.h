@@ -70,6 +70,7 @@ class ModelSimulator final : public Simulator {
   std::vector<runtime::Literal> before(const runtime::Bits& hidden) const;
   /// The states at `t` with these valuations, ascending, that go on.
   Answer grouped(const std::vector<runtime::Bits>& valuations, compiler::Timepoint t);
+  std::string no_start(std::vector<runtime::Literal> given, std::vector<std::string> said);
   runtime::SolveStatus goes_on(const runtime::Bits& state, compiler::Timepoint t);
   void move_to(const std::vector<WorldState>& states);
   Outcome no_list(const Answer& answer, const std::string& what) const;

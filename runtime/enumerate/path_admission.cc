@@ -31,7 +31,6 @@ PathAdmission::PathAdmission(const CompiledModel& model)
     : model_(&model), index_(model), undemanded_(undemanded_events(model)) {
   for (std::uint32_t i = 0; i < model.events.size(); ++i) {
     events_.emplace(model.events[i].name, i);
-    if (model.events[i].slot) event_slots_.push_back(*model.events[i].slot);
   }
 }
 
@@ -53,7 +52,7 @@ std::optional<std::vector<Literal>> PathAdmission::facts(std::span<const Execute
     const auto performed = *model.events[event->second].slot;
     out.push_back(Literal::positive(model.variable(performed, t)));
     // Else anything that might happen by itself would excuse any difference.
-    for (const auto slot : perform.step ? undemanded_ : event_slots_) {
+    for (const auto slot : undemanded_) {
       if (slot != performed) out.push_back(~Literal::positive(model.variable(slot, t)));
     }
     if (!perform.step) continue;

@@ -16,7 +16,7 @@ namespace parallax::runtime {
 
 /// Outcome of one perform of a plan that was executed, or of one event of a trace.
 struct ExecutedPerform {
-  std::optional<compiler::PlanStepId> step;  // none: an event of a trace, and no other happens then
+  std::optional<compiler::PlanStepId> step;  // none: an event of a trace
   std::string event;                         // printed: "Go(r2)"
   bool succeeded = false;
   std::string returned;  // the object that it found; may be empty
@@ -55,8 +55,7 @@ class PathAdmission {
   const CompiledModel* model_;
   compiler::AtomIndex index_;
   std::map<std::string, std::uint32_t, std::less<>> events_;
-  std::vector<std::uint32_t> undemanded_;   // slots of events
-  std::vector<std::uint32_t> event_slots_;  // of all events
+  std::vector<std::uint32_t> undemanded_;  // slots of events
 };
 
 /// The states at timepoint 0 that the axioms about it admit, each as the true ones of `fluents`,

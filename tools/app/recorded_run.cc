@@ -62,9 +62,9 @@ runtime::AtomClaims only(const runtime::Names& names) {
 /// journal has nothing else, and perhaps the start (`run --split-initial`).
 bool is_key_of(const harness::CampaignTrace& trace, std::string_view key) {
   for (std::size_t t = 0; t < trace.event_count(); ++t) {
-    const auto& event = trace.event(t);
-    if (!key.starts_with(event)) return false;
-    key.remove_prefix(event.size());
+    const auto events = fmt::format("{}", fmt::join(trace.happens(t), "+"));
+    if (!key.starts_with(events)) return false;
+    key.remove_prefix(events.size());
     const auto end = key.find(';');
     if (end == std::string_view::npos || (end > 0 && key.front() != '=')) return false;
     key.remove_prefix(end + 1);

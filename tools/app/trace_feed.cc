@@ -11,6 +11,7 @@
 #include "compiler/base/words.h"
 #include "harness/campaign/loop_stream.h"
 #include "harness/region/state_mapping.h"
+#include "runtime/enumerate/demanded_events.h"
 #include "runtime/explain/contradiction.h"
 #include "runtime/session/solver_session.h"
 #include "tools/app/trace_writer.h"
@@ -306,17 +307,39 @@ base::Status EnumeratedTraces::explain_absence() const {
   return base::Unit{};
 }
 
+namespace {
+
+/// The one of several events that is performed: that of the plan's step, else the only one that no
+/// axiom can demand. Empty: there is none, or there are several.
+std::string performed_event(const compiler::CompiledModel& model,
+                            const runtime::TracePoint& point) {
+  const auto demandable = runtime::demandable_events(model);
+  std::vector<std::string> performed;
+  for (const auto event : point.happens) {
+    const auto& name = model.events[event.index()].name;
+    const bool planned = point.plan_step && model.plan[*point.plan_step].event == name;
+    if (planned || !runtime::contains(demandable, event)) performed.push_back(name);
+  }
+  return performed.size() == 1 ? performed.front() : std::string();
+}
+
+}  // namespace
+
 base::Result<harness::CampaignTrace> campaign_trace(const compiler::CompiledModel& model,
                                                     runtime::Trace trace, Context& context) {
   harness::CampaignTrace out{std::move(trace), {}, {}};
   out.key = runtime::event_key(out);
   for (std::size_t t = 0; t + 1 < out.points.size(); ++t) {
     const auto& point = out.points[t];
-    if (point.happens.size() != 1) {
-      const auto where = model.origins.front().source;
-      return context.sink().error(codes::kSeveralEventsAtOnce, where, point.happens.size(), t);
-    }
     auto& planned = out.plan.emplace_back();
+    if (point.happens.size() != 1) {
+      const auto performed = performed_event(model, point);
+      if (performed.empty()) {
+        const auto where = model.origins.front().source;
+        return context.sink().error(codes::kSeveralEventsAtOnce, where, point.happens.size(), t);
+      }
+      planned.event = performed;
+    }
     if (!point.plan_step) continue;
     const auto& step = model.plan[*point.plan_step];
     planned.source = context.files().place(step.source);

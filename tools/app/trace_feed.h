@@ -72,7 +72,8 @@ class EnumeratedTraces final : public harness::TraceFeed {
 };
 
 /// The trace as campaigns have it, with what the plan says of its events. Reports
-/// kSeveralEventsAtOnce unless exactly one event leads from each timepoint to the next.
+/// kSeveralEventsAtOnce unless between each timepoint and the next exactly one event happens that
+/// no axiom demands.
 base::Result<harness::CampaignTrace> campaign_trace(const compiler::CompiledModel& model,
                                                     runtime::Trace trace, Context& context);
 

@@ -26,10 +26,10 @@
 #include "harness/report/report.h"
 #include "tools/app/observed_path.h"
 #include "tools/learn/bounded_traces.h"
-#include "tools/learn/explorer.h"
 #include "tools/learn/outcome_facts.h"
 #include "tools/learn/round_folder.h"
 #include "tools/learn/taught_model.h"
+#include "tools/repair/explorer.h"
 
 namespace parallax::tools {
 

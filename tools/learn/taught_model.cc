@@ -162,6 +162,10 @@ std::vector<std::string> TaughtModel::not_learned() const {
   }
   std::set<std::size_t> happened;
   for (const auto& step : observations_->transitions()) happened.insert(step.event);
+  std::set<std::string> demanded;
+  for (const auto& form : domain_->forms) {
+    if (form.kind == compiler::AxiomForm::Kind::kTrigger) demanded.insert(form.event_symbol);
+  }
   const auto& symbols = vocabulary_->symbols();
   for (std::size_t i = 0; i < symbols.size(); ++i) {
     const bool fluent = symbols[i].kind == compiler::SymbolKind::kFluent;
@@ -169,7 +173,11 @@ std::vector<std::string> TaughtModel::not_learned() const {
       out.push_back(fmt::format("{}: the scenario does not observe it", symbols[i].name));
     }
     if (symbols[i].kind == compiler::SymbolKind::kEvent && !happened.contains(i)) {
-      out.push_back(fmt::format("{}: it never happened", symbols[i].name));
+      out.push_back(fmt::format("{}: {}", symbols[i].name,
+                                demanded.contains(symbols[i].name)
+                                    ? "the scenario's model demands it, and runs do not show when "
+                                      "it happens"
+                                    : "it never happened"));
     }
   }
   return out;

@@ -152,7 +152,7 @@ void add_repair(const PageOptions& options, Context& context, PageData& page) {
   }
   for (const auto& proposal : result->proposals) {
     page.proposals.push_back({proposal.words, patch_from_here(proposal.files),
-                              proposal_sentences(proposal, result->runs), proposal.tied,
+                              proposal_sentences(proposal, *result), proposal.tied,
                               proposal.precaution, name_of(proposal.changes)});
   }
   if (!result->why_tied.empty()) {

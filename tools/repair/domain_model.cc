@@ -28,7 +28,24 @@ std::unique_ptr<DomainModel> load_domain(const harness::Scenario& scenario,
   auto typed = compiler::check_model(domain->ast, domain->files, unread, check);
   if (!typed) return nullptr;
   domain->typed = *std::move(typed);
-  domain->forms = compiler::axiom_forms(domain->ast, domain->files);
+  domain->forms = compiler::repairable_forms(domain->ast, domain->files);
+  return domain;
+}
+
+std::unique_ptr<DomainModel> domain_of_text(const std::string& text) {
+  auto domain = std::make_unique<DomainModel>();
+  base::DiagnosticSink unread;
+  const auto file = domain->files.add("edited.e", text);
+  auto ast = compiler::load_model_text(file, ".", {}, domain->files, unread);
+  if (!ast) return nullptr;
+  domain->ast = *std::move(ast);
+  compiler::CheckOptions check;
+  check.time_lower = 0;
+  check.time_upper = 1;
+  auto typed = compiler::check_model(domain->ast, domain->files, unread, check);
+  if (!typed) return nullptr;
+  domain->typed = *std::move(typed);
+  domain->forms = compiler::repairable_forms(domain->ast, domain->files);
   return domain;
 }
 

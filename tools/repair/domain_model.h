@@ -25,6 +25,9 @@ struct DomainModel {
 /// loaded.
 std::unique_ptr<DomainModel> load_domain(const harness::Scenario& scenario, const Context& context);
 
+/// The same of a text. None: it is not a valid model.
+std::unique_ptr<DomainModel> domain_of_text(const std::string& text);
+
 /// Compiles the model in a text, without plan and constraints, for this horizon. None: it is not a
 /// valid model; `why` is then the first error.
 std::optional<compiler::CompiledModel> compile_text(const std::string& text, std::int64_t horizon,

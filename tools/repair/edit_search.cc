@@ -38,9 +38,6 @@ EditSearch::EditSearch(const compiler::CompiledModel& guarded, const std::vector
       fixed_(static_cast<std::size_t>(guarded.base())),
       solver_(runtime::make_cadical_solver(&stop)),
       circuit_(*solver_, static_cast<std::int32_t>(edits.size()) + 1) {
-  for (const auto& event : guarded.events) {
-    if (event.slot) all_.push_back(*event.slot);
-  }
   std::vector<Literal> selectors;
   for (std::size_t i = 0; i < edits.size(); ++i) {
     selectors.push_back(selector(i));
@@ -180,7 +177,7 @@ void EditSearch::add(std::size_t number) {
     } else {
       say(event, true);
     }
-    for (const auto slot : evidence.executed ? undemanded_ : all_) {
+    for (const auto slot : undemanded_) {
       const auto literal = Literal::positive(guarded_.variable(slot, static_cast<Timepoint>(i)));
       if (!event || literal != *event) facts.push_back(~literal);
     }

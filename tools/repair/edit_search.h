@@ -61,7 +61,7 @@ class EditSearch {
   const std::vector<compiler::Edit>& edits_;
   const std::vector<Evidence>& evidence_;
   compiler::AtomIndex index_;
-  std::vector<std::uint32_t> undemanded_, all_;
+  std::vector<std::uint32_t> undemanded_;
   std::vector<std::optional<runtime::Literal>> fixed_;   // selectors, by fixed variable - 1
   std::vector<std::vector<std::uint32_t>> occurrences_;  // clauses, by 2 * (variable - 1) + negated
   std::unique_ptr<runtime::SatSolver> solver_;

@@ -59,11 +59,7 @@ EvidenceAdmission::EvidenceAdmission(const compiler::CompiledModel& model,
                                      const std::atomic<bool>& stop)
     : session_(model, runtime::make_cadical_solver(&stop)),
       index_(model),
-      undemanded_(runtime::undemanded_events(model)) {
-  for (const auto& event : model.events) {
-    if (event.slot) all_.push_back(*event.slot);
-  }
-}
+      undemanded_(runtime::undemanded_events(model)) {}
 
 std::optional<std::vector<Literal>> EvidenceAdmission::facts(const Evidence& evidence,
                                                              std::size_t steps, std::size_t states,
@@ -76,8 +72,8 @@ std::optional<std::vector<Literal>> EvidenceAdmission::facts(const Evidence& evi
     const bool wanted = without != i;
     if (wanted && !happens) return std::nullopt;
     if (happens) out.push_back(wanted ? *happens : ~*happens);
-    // Executed plans may have further events that the model demands; traces have none.
-    for (const auto slot : evidence.executed ? undemanded_ : all_) {
+    // There may be further events that the model demands.
+    for (const auto slot : undemanded_) {
       const auto literal = Literal::positive(model.variable(slot, t));
       if (!happens || literal != *happens) out.push_back(~literal);
     }

@@ -79,7 +79,7 @@ class EvidenceAdmission {
 
   runtime::SolverSession session_;
   compiler::AtomIndex index_;
-  std::vector<std::uint32_t> undemanded_, all_;  // slots of events
+  std::vector<std::uint32_t> undemanded_;  // slots of events
 };
 
 /// Does the reason say that the simulator's world cannot do the action at all?

@@ -24,6 +24,7 @@
 #include "tools/repair/experiment_runs.h"
 #include "tools/repair/ranking.h"
 #include "tools/repair/repeats.h"
+#include "tools/repair/validation.h"
 #include "tools/repair/world_files.h"
 
 namespace parallax::tools {
@@ -45,6 +46,12 @@ class Experiments {
 
   base::Result<RepairResult> run() {
     if (!repeat()) return context_.sink().already_reported();
+    if (!first_.partings.empty() && !context_.stopped()) {
+      auto further = validation_runs(first_, experiments_, context_);
+      if (!further) return context_.sink().already_reported();
+      first_.validation = *std::move(further);
+      if (last_) last_->validation = first_.validation;
+    }
     auto proposed = propose_repairs(last_ ? *last_ : first_, context_);
     if (!proposed) return proposed;
     auto& result = *proposed;
@@ -223,6 +230,7 @@ class Experiments {
     auto wide = first_.options;
     auto input = load_repair_input(wide, context_);
     if (!input) return context_.sink().already_reported();
+    input->validation = first_.validation;
     auto proposed = propose_repairs(*input, context_);
     if (!proposed) return context_.sink().already_reported();
     result = *std::move(proposed);
@@ -250,7 +258,7 @@ class Experiments {
                   const std::vector<Proposal>& left) const {
     auto seen = (last_ ? *last_ : first_).evidence;
     if (contender.precaution) set_aside((last_ ? *last_ : first_).evidence, seen);
-    const auto verdict = verify(text, seen, context_);
+    const auto verdict = verify(text, seen, {}, context_);
     return !verdict.admits ||
            (!left.empty() && verdict.runs_whole < left.front().verdict.runs_whole);
   }

@@ -11,7 +11,9 @@
 #include "compiler/repair/edit_text.h"
 #include "compiler/repair/guarded_model.h"
 #include "tools/repair/binding_change.h"
+#include "tools/repair/edit_scope.h"
 #include "tools/repair/edit_search.h"
+#include "tools/repair/world_files.h"
 
 namespace parallax::tools {
 
@@ -71,6 +73,13 @@ class ModelSearch {
     return out;
   }
 
+  /// Is some proposal right on all random sequences of events, if there are any?
+  bool is_borne_out() const {
+    return std::any_of(result_.proposals.begin(), result_.proposals.end(), [&](const auto& each) {
+      return !each.open && each.verdict.validated == input_.validation.size();
+    });
+  }
+
   /// First edits about the steps themselves, then about earlier steps; more edits last.
   void search_all(Mode mode) {
     if (search(mode, 1)) {
@@ -81,7 +90,11 @@ class ModelSearch {
       // Adds a condition to a missing effect if that explains more runs, or replaces constants by
       // variables.
       const auto best = most_whole();
-      if (best == input_.runs || context_.stopped()) return;
+      if (context_.stopped()) return;
+      if (best == input_.runs) {
+        refine(mode);
+        return;
+      }
       only_constants_ ? search(mode, 2, std::nullopt, true) : search(mode, 2, best);
       return;
     }
@@ -93,92 +106,13 @@ class ModelSearch {
   }
 
   EditScope scope(Mode mode) const {
-    const bool wide = mode == Mode::kWide || mode == Mode::kWhole;
-    EditScope out;
-    for (const auto& form : domain_.forms) {
-      if (form.kind == compiler::AxiomForm::Kind::kTrigger) out.demanded.insert(form.event_symbol);
-    }
-    // They are in no recording: any of them may have happened at the step.
-    out.more_events = out.demanded;
-    for (const auto& parting : input_.partings) {
-      const auto& seen = *std::find_if(evidence_.begin(), evidence_.end(), [&](const auto& each) {
-        return each.ids.front() == parting.ids.front();
-      });
-      EditScope::Step step;
-      step.event = parting.step.event;
-      step.refused = parting.step.failed;
-      step.not_possible = says_not_possible(parting.step.reason);
-      step.before = seen.states[parting.after - 1];
-      step.differing = parting.seen;
-      step.late = late(parting, seen);
-      out.steps.push_back(std::move(step));
-      if (!wide) continue;
-      const auto last = mode == Mode::kWhole ? seen.steps.size() : parting.after;
-      for (std::size_t t = 0; t < last; ++t) {
-        out.more_events.insert(base::symbol_of(seen.steps[t].event));
-      }
-    }
-    for (const auto& seen : evidence_) {
-      add_changed(seen, out);
-      add_successes(seen, out);
-    }
+    const auto reach = mode == Mode::kWhole  ? ScopeReach::kWholeRuns
+                       : mode == Mode::kWide ? ScopeReach::kEarlierSteps
+                                             : ScopeReach::kPartings;
+    auto out = edit_scope(input_, reach);
     out.open_outcomes = mode == Mode::kOpen;
     out.open_refused = mode == Mode::kExact;
     out.alternatives = mode == Mode::kEither;
-    if (!wide) return out;
-    // The mistake may be in any fluent that the axioms of the earlier steps mention.
-    for (const auto& symbol : domain_.typed->symbols) {
-      if (symbol.kind == compiler::SymbolKind::kFluent && !symbol.noninertial) {
-        out.more_fluents.insert(symbol.name);
-      }
-    }
-    return out;
-  }
-
-  /// Also counts changes after the parting: they tell what an event does, if not what the model
-  /// says of it.
-  static void add_changed(const Evidence& seen, EditScope& scope) {
-    for (std::size_t t = 0; t + 1 < seen.states.size(); ++t) {
-      for (const auto& [fluent, holds] : seen.states[t + 1]) {
-        const auto before = seen.states[t].find(fluent);
-        if (before == seen.states[t].end() || before->second == holds) continue;
-        scope.changed[base::symbol_of(seen.steps[t].event)].emplace(base::symbol_of(fluent), holds);
-      }
-    }
-  }
-
-  /// Steps of the events at which runs and model part, in runs that go on as the model says.
-  static void add_successes(const Evidence& seen, EditScope& scope) {
-    for (std::size_t t = 0; t < seen.steps.size() && seen.divergence.value_or(t + 2) > t + 1; ++t) {
-      const auto symbol = base::symbol_of(seen.steps[t].event);
-      const bool is_asked =
-          std::any_of(scope.steps.begin(), scope.steps.end(),
-                      [&](const auto& at) { return base::symbol_of(at.event) == symbol; });
-      if (!is_asked || seen.steps[t].failed) continue;
-      EditScope::Success success{seen.steps[t].event, seen.states[t]};
-      const auto& known = scope.successes;
-      if (std::find(known.begin(), known.end(), success) == known.end()) {
-        scope.successes.push_back(std::move(success));
-      }
-    }
-  }
-
-  /// The differing fluents that came as the model says, but at a later step.
-  static std::vector<EditScope::Step::Late> late(const RunParting& parting, const Evidence& seen) {
-    constexpr std::size_t kLatest = 3;  // steps
-    std::vector<EditScope::Step::Late> out;
-    auto waiting = parting.seen;
-    for (std::size_t by = 1; by <= kLatest && parting.after + by < seen.states.size(); ++by) {
-      EditScope::Step::Late step{seen.steps[parting.after + by - 1].event, by, {}};
-      const auto& state = seen.states[parting.after + by];
-      std::erase_if(waiting, [&](const auto& fluent) {
-        const auto found = state.find(fluent.first);
-        const bool came = found != state.end() && found->second != fluent.second;
-        if (came) step.fluents.insert(fluent.first);
-        return came;
-      });
-      if (!step.fluents.empty()) out.push_back(std::move(step));
-    }
     return out;
   }
 
@@ -250,7 +184,7 @@ class ModelSearch {
   }
 
   static bool opens(const Edit& edit) {
-    return edit.kind == Edit::Kind::kOpenEvent ||
+    return edit.kind == Edit::Kind::kOpenEvent || edit.frees ||
            (edit.kind == Edit::Kind::kAddEffect && edit.text.starts_with("Releases"));
   }
 
@@ -310,10 +244,84 @@ class ModelSearch {
     std::unique_ptr<EditSearch> search;
   };
 
+  /// The proposal that these edits are. None: the check of their text says no.
+  std::optional<Proposal> proposal_of(const Prepared& prepared, const compiler::EditText& texts,
+                                      const std::vector<std::size_t>& set,
+                                      const std::vector<Evidence>& evidence, Mode mode) {
+    const auto& edits = prepared.guarded->edits;
+    const auto changes = texts.changes(set);
+    Proposal proposal;
+    proposal.text = compiler::flat_text(domain_.ast, domain_.files, changes);
+    proposal.verdict = verify(*proposal.text, evidence, input_.validation, context_);
+    if (!proposal.verdict.admits) {
+      result_.remarks.push_back(
+          fmt::format("not proposed, as the check of its text says no: {} ({})", texts.words(set),
+                      proposal.verdict.why));
+      return std::nullopt;
+    }
+    proposal.precaution = mode == Mode::kCautious;
+    // An effect with its conditions is one axiom, and one edit with the first of them.
+    const auto conditions = std::count_if(set.begin(), set.end(), [&](std::size_t edit) {
+      return edits[edit].kind == Edit::Kind::kAddCondition;
+    });
+    proposal.size = set.size() - (conditions > 0 ? 1 : 0);
+    for (const auto edit : set) proposal.oddity += edits[edit].oddity;
+    proposal.words = texts.words(set);
+    proposal.files = changed_files(domain_.files, changes);
+    for (const auto edit : set) {
+      const auto& each = edits[edit];
+      if (!opens(each)) continue;
+      tell_failures(each.event, proposal);
+      proposal.open = true;
+    }
+    return proposal;
+  }
+
+  /// Adds conditions to a new effect or trigger, one after the other, as long as random sequences
+  /// bear out more of it: the runs, which it explains without them, ask for none.
+  void refine(Mode mode) {
+    const auto& known = searches_[mode];
+    if (input_.validation.empty() || !known || !known->search || is_borne_out()) return;
+    const auto& edits = known->guarded->edits;
+    const compiler::EditText texts(domain_.ast, domain_.files, domain_.forms, edits,
+                                   files_of_world());
+    const auto is_new = [&](std::size_t edit) {
+      return !opens(edits[edit]) && (edits[edit].kind == Edit::Kind::kAddEffect ||
+                                     edits[edit].kind == Edit::Kind::kAddTrigger);
+    };
+    std::pair<std::size_t, std::vector<std::size_t>> best;
+    for (const auto& [validated, set] : taken_) {
+      const bool better = best.second.empty() || validated > best.first;
+      if (better && std::count_if(set.begin(), set.end(), is_new) == 1) best = {validated, set};
+    }
+    constexpr int kMostConditions = 3;
+    for (int round = 0; round < kMostConditions && !best.second.empty(); ++round) {
+      const auto of = *std::find_if(best.second.begin(), best.second.end(), is_new);
+      std::optional<Proposal> found;
+      auto improved = best;
+      for (std::size_t i = of + 1; i < edits.size() && !context_.stopped(); ++i) {
+        if (edits[i].kind != Edit::Kind::kAddCondition || edits[i].of != of) break;
+        auto set = best.second;
+        if (std::find(set.begin(), set.end(), i) != set.end()) continue;
+        set.push_back(i);
+        std::sort(set.begin(), set.end());
+        auto proposal = proposal_of(*known, texts, set, evidence_, mode);
+        if (!proposal || proposal->verdict.validated <= improved.first) continue;
+        improved = {proposal->verdict.validated, std::move(set)};
+        found = std::move(proposal);
+      }
+      if (!found) return;
+      best = std::move(improved);
+      result_.proposals.push_back(*std::move(found));
+      if (is_borne_out()) return;
+    }
+  }
+
   bool take(const Prepared& prepared, const EditSearch::Found& found,
             const std::vector<Evidence>& evidence, Mode mode, std::optional<std::size_t> whole) {
     const auto& edits = prepared.guarded->edits;
-    const compiler::EditText texts(domain_.ast, domain_.files, domain_.forms, edits);
+    const compiler::EditText texts(domain_.ast, domain_.files, domain_.forms, edits,
+                                   files_of_world());
     std::vector<Proposal> tried;
     std::vector<std::vector<std::size_t>> sets = found.sets;
     const auto oddity = [&](const std::vector<std::size_t>& set) {
@@ -328,39 +336,16 @@ class ModelSearch {
     std::set<std::string> seen;
     for (const auto& set : sets) {
       if (tried.size() == kMostVerified || context_.stopped()) break;
-      const auto changes = texts.changes(set);
-      Proposal proposal;
-      proposal.text = compiler::flat_text(domain_.ast, domain_.files, changes);
-      if (!seen.insert(*proposal.text).second) continue;
-      proposal.verdict = verify(*proposal.text, evidence, context_);
-      if (!proposal.verdict.admits) {
-        result_.remarks.push_back(
-            fmt::format("not proposed, as the check of its text says no: {} ({})", texts.words(set),
-                        proposal.verdict.why));
-        continue;
-      }
-      if (whole && proposal.verdict.runs_whole <= *whole) continue;
-      proposal.precaution = mode == Mode::kCautious;
-      // An effect with one condition counts as one edit, as it is one axiom.
-      proposal.size = set.size();
-      for (const auto edit : set) {
-        if (edits[edit].kind != Edit::Kind::kAddCondition) continue;
-        --proposal.size;
-        break;
-      }
+      const auto text = compiler::flat_text(domain_.ast, domain_.files, texts.changes(set));
+      if (!seen.insert(text).second) continue;
+      auto proposal = proposal_of(prepared, texts, set, evidence, mode);
+      if (!proposal) continue;
+      if (whole && proposal->verdict.runs_whole <= *whole) continue;
       only_constants_ = (tried.empty() || only_constants_) &&
                         std::all_of(set.begin(), set.end(),
                                     [&](auto edit) { return edits[edit].names_constants; });
-      proposal.oddity = oddity(set);
-      proposal.words = texts.words(set);
-      proposal.files = changed_files(domain_.files, changes);
-      for (const auto edit : set) {
-        const auto& each = edits[edit];
-        if (!opens(each)) continue;
-        tell_failures(each.event, proposal);
-        proposal.open = true;
-      }
-      tried.push_back(std::move(proposal));
+      taken_.emplace_back(proposal->verdict.validated, set);
+      tried.push_back(*std::move(proposal));
     }
     const bool any = !tried.empty();
     if (!any) only_constants_ = false;
@@ -384,6 +369,20 @@ class ModelSearch {
       proposal.files.push_back(*std::move(bound->file));
       proposal.changes = Proposal::Changes::kBinding;
     }
+  }
+
+  /// The numbers of the model's files that the world reads as well.
+  std::set<std::uint32_t> files_of_world() const {
+    std::vector<ChangedFile> all;
+    for (std::uint32_t i = 0; i < domain_.files.size(); ++i) {
+      all.push_back({domain_.files[base::FileId(i)].name(), "", ""});
+    }
+    const auto shared = read_by_world(input_.loaded.scenario, all, context_);
+    std::set<std::uint32_t> out;
+    for (std::uint32_t i = 0; i < all.size(); ++i) {
+      if (std::find(shared.begin(), shared.end(), all[i].name) != shared.end()) out.insert(i);
+    }
+    return out;
   }
 
   void find_nearest_miss() {
@@ -410,6 +409,8 @@ class ModelSearch {
   std::map<Mode, std::shared_ptr<const Guarded>> guarded_;
   std::map<Mode, std::unique_ptr<Prepared>> searches_;
   FoundProposals result_;
+  /// Sets of edits that were taken, with the random sequences that they are right on.
+  std::vector<std::pair<std::size_t, std::vector<std::size_t>>> taken_;
   bool only_constants_ = false;  // of what was taken last: all are effects that name constants
 };
 

@@ -39,6 +39,8 @@ struct Proposal {
   bool hides_failure = false;  // of a plan: the failure is taken, and nothing is done about it
   Verdict verdict;
   std::size_t unexplained = 0;  // runs that count against it in the ranking
+  std::size_t unvalidated = 0;  // likewise, random sequences
+  bool is_told_cause = false;   // a split of the start that the runs show to be the cause
   /// It explains the first difference, and no run follows it to its end.
   bool only_begins() const {
     const bool of_model = changes == Changes::kModel || changes == Changes::kBinding;

@@ -1,12 +1,14 @@
 // The order of proposals.
 //
-// First come proposals that follow most runs to their end; those that follow none come last. Then
-// they are ordered by size, then precautions before splits of the start before other changes, then
-// specific ones before those that let anything happen, and at last by oddity. Only the first few
-// have their traces compared with the model's: among equals the change that permits the fewest new
-// traces comes first, then the one that forbids the fewest. Neighbours that the order cannot
-// distinguish are tied, which is told. Proposals as well founded as the first one that admit fewer
-// runs to their end were refuted by experiments and are dropped.
+// First come proposals that follow most runs to their end; those that follow none come last. Among
+// them a split of the start comes first where the runs show that it is the cause, then what most of
+// the random sequences of events bear out. Then they are ordered by size, then precautions before
+// splits of the start before other changes, then specific ones before those that let anything
+// happen, and at last by oddity. Only the first few have their traces compared with the model's:
+// among equals the change that permits the fewest new traces comes first, then the one that forbids
+// the fewest. Neighbours that the order cannot distinguish are tied, which is told. Proposals as
+// well founded as the first one that admit fewer runs to their end were refuted by experiments and
+// are dropped.
 
 #include "tools/repair/ranking.h"
 
@@ -27,10 +29,11 @@ int group_of(const Proposal& proposal) {
 }
 
 bool likelier(const Proposal& a, const Proposal& b) {
-  return std::tuple(a.only_begins(), a.unexplained, a.size, group_of(a), a.open,
-                    ~a.verdict.runs_whole, a.oddity) < std::tuple(b.only_begins(), b.unexplained,
-                                                                  b.size, group_of(b), b.open,
-                                                                  ~b.verdict.runs_whole, b.oddity);
+  const auto key = [](const Proposal& each) {
+    return std::tuple(each.only_begins(), each.unexplained, !each.is_told_cause, each.unvalidated,
+                      each.size, group_of(each), each.open, ~each.verdict.runs_whole, each.oddity);
+  };
+  return key(a) < key(b);
 }
 
 /// Counts the runs that each proposal does not follow to their end. Precautions and splits of the
@@ -49,6 +52,21 @@ void count_unexplained(std::size_t runs, std::vector<Proposal>& proposals) {
   }
 }
 
+/// The same for random sequences of events.
+void count_unvalidated(std::size_t sequences, std::vector<Proposal>& proposals) {
+  auto least = sequences;
+  for (auto& each : proposals) {
+    const bool sets_aside = each.precaution || each.changes == Proposal::Changes::kScenario;
+    each.unvalidated = sets_aside ? 0
+                                  : sequences - std::min(sequences, each.verdict.validated) +
+                                        each.verdict.runs_undemanded;
+    if (!each.open) least = std::min(least, each.unvalidated);
+  }
+  for (auto& each : proposals) {
+    if (each.open) each.unvalidated = std::max(each.unvalidated, least);
+  }
+}
+
 /// Among equals, the change that permits the fewest new traces, then the one that forbids the
 /// fewest.
 bool changes_less(const Proposal& a, const Proposal& b) {
@@ -59,11 +77,17 @@ bool changes_less(const Proposal& a, const Proposal& b) {
   return a.effects->lost->value < b.effects->lost->value;
 }
 
-/// Ties between neighbours that the order cannot distinguish.
+/// Ties between neighbours that the order cannot distinguish. Of these, long ones come last.
 void find_ties(std::vector<Proposal>& proposals) {
+  constexpr std::size_t kLong = 100;  // characters
   for (std::size_t begin = 0; begin < proposals.size();) {
     auto end = begin + 1;
     while (end < proposals.size() && !changes_less(proposals[begin], proposals[end])) ++end;
+    const auto place = [&](std::size_t i) {
+      return proposals.begin() + static_cast<std::ptrdiff_t>(i);
+    };
+    std::stable_partition(place(begin), place(end),
+                          [](const Proposal& each) { return each.words.size() <= kLong; });
     for (auto i = begin; i < end; ++i) {
       for (auto j = begin; j < end; ++j) {
         if (i != j) proposals[i].tied.push_back(j + 1);
@@ -91,11 +115,18 @@ void drop_refuted(std::vector<Proposal>& proposals) {
                   proposals.end());
 }
 
+/// Do random sequences bear out less than half of what they do for the other? Such a proposal is
+/// worth no experiment.
+bool clearly_behind(const Proposal& proposal, const Proposal& other) {
+  return 2 * proposal.verdict.validated < other.verdict.validated;
+}
+
 }  // namespace
 
 Unranked rank_proposals(const RepairInput& input, std::size_t limit,
                         std::vector<Proposal>& proposals, Context& context) {
   count_unexplained(input.runs, proposals);
+  count_unvalidated(input.validation.size(), proposals);
   std::stable_sort(proposals.begin(), proposals.end(), likelier);
   if (input.experiments > 0) drop_refuted(proposals);
   Unranked out;
@@ -136,7 +167,7 @@ std::vector<std::size_t> as_well_founded(const std::vector<Proposal>& proposals)
     const auto& a = proposals.front();
     const auto& b = proposals[i];
     if (a.changes == b.changes && a.size == b.size && a.precaution == b.precaution &&
-        a.verdict.runs_whole == b.verdict.runs_whole) {
+        a.verdict.runs_whole == b.verdict.runs_whole && !clearly_behind(b, a)) {
       out.push_back(i);
     }
   }

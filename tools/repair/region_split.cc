@@ -313,7 +313,7 @@ class SplitSearch {
     proposal.size = 1;
     proposal.text = compiler::flat_text(domain.ast, domain.files, changes);
     const auto held = held_against(parting, cause, split);
-    proposal.verdict = verify(*proposal.text, held.evidence, context_);
+    proposal.verdict = verify(*proposal.text, held.evidence, {}, context_);
     proposal.words = words(parting, split, effects);
     if (!proposal.verdict.admits) {
       out_.remarks.push_back(fmt::format("not proposed, as the check of its text says no: {} ({})",

@@ -95,6 +95,11 @@ base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& co
     result.edits += found.edits;
     if (result.nearest_miss.empty()) result.nearest_miss = std::move(found.nearest_miss);
   }
+  const bool of_region = std::any_of(result.causes.begin(), result.causes.end(),
+                                     [](const auto& cause) { return cause.kind == "region"; });
+  for (auto& proposal : result.proposals) {
+    proposal.is_told_cause = of_region && proposal.changes == Proposal::Changes::kScenario;
+  }
   // Causes that the model has no words for are told with proposals that leave the outcome open or
   // take it to happen.
   for (auto& proposal : result.proposals) {
@@ -102,6 +107,7 @@ base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& co
     if (proposal.changes == Proposal::Changes::kScenario) continue;  // it says so itself
     for (const auto& cause : result.causes) proposal.evidence.push_back(cause.words);
   }
+  result.sequences = input.validation.size();
   const auto left_out = rank_proposals(input, static_cast<std::size_t>(input.options.limit),
                                        result.proposals, context);
   result.more = result.more || left_out.more;

@@ -23,6 +23,7 @@ struct RepairResult {
   std::string nearest_miss;  // where there is no proposal; may be empty
   std::vector<std::string> remarks, hints;
   bool finished = true;              // the run came to a verdict of its own
+  std::size_t sequences = 0;         // random ones that the proposals were held against
   std::size_t experiments = 0;       // of the runs were made to tell proposals apart
   std::vector<std::string> refuted;  // proposals, in words, that these have refuted
   /// Proposals that no run refutes but that others outranked: the number of proposals is limited.
@@ -48,8 +49,8 @@ base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& co
 /// Then checks all against the requested properties. Reports a text that is not a property.
 base::Status add_plan_proposals(const RepairInput& input, RepairResult& result, Context& context);
 
-/// Evidence of `runs` recorded runs for a proposal, and its cost, as sentences.
-std::vector<std::string> proposal_sentences(const Proposal& proposal, std::size_t runs);
+/// Evidence of the runs for a proposal, and its cost, as sentences.
+std::vector<std::string> proposal_sentences(const Proposal& proposal, const RepairResult& result);
 /// Proposals that the runs refuted or that others crowded out, and those still open; sentences.
 struct TieWords {
   std::vector<std::string> refuted, open;

@@ -53,6 +53,8 @@ struct RepairInput {
   /// Runs that went the same way up to a step and then differently: chance, or the simulator.
   std::vector<std::string> contradictions = {};
   std::vector<std::string> remarks = {};
+  /// Random sequences of events that the proposals are held against (validation_runs).
+  std::vector<Evidence> validation = {};
 };
 
 /// Do both have the same events up to `t`, through the same states before the last of them?

@@ -161,7 +161,7 @@ class Rounds {
     // Proposals must also explain the runs of earlier rounds.
     std::erase_if(all, [&](const Proposal& proposal) {
       const auto& earlier = proposal.precaution ? cautious : evidence_;
-      return proposal.text && !verify(*proposal.text, earlier, context_).admits;
+      return proposal.text && !verify(*proposal.text, earlier, {}, context_).admits;
     });
     if (all.empty()) {
       end(LoopEnd::kNone, before == 0 ? "no change was found that explains all runs"

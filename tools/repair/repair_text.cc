@@ -66,9 +66,20 @@ void add_properties(const Proposal& proposal, std::vector<std::string>& out) {
   }
 }
 
+/// What random sequences of events say of a proposal.
+std::string validation_sentence(const Verdict& verdict, std::size_t sequences) {
+  constexpr std::size_t kMost = 80;  // characters of a sequence
+  const auto all = base::counted(sequences, "random sequence") + " of events";
+  if (verdict.validated >= sequences) return "Also right on " + all + ".";
+  auto steps = verdict.refuted_by;
+  if (steps.size() > kMost) steps = "..." + steps.substr(steps.size() - kMost);
+  return fmt::format("Right on {} of {}; refuted by {}.", verdict.validated, all,
+                     steps.empty() ? "the first state of one" : steps);
+}
+
 std::string proposal_text(const Proposal& proposal, std::size_t rank, const RepairResult& result) {
   auto out = fmt::format("\n{}. {}{}.\n", rank, proposal.words, tie_text(proposal.tied));
-  for (const auto& sentence : proposal_sentences(proposal, result.runs)) {
+  for (const auto& sentence : proposal_sentences(proposal, result)) {
     out += "   " + base::printable(sentence) + "\n";
   }
   const auto place = patch_place_words(proposal.files);
@@ -87,7 +98,8 @@ std::string tie_text(const RepairResult& result) {
 
 }  // namespace
 
-std::vector<std::string> proposal_sentences(const Proposal& proposal, std::size_t runs) {
+std::vector<std::string> proposal_sentences(const Proposal& proposal, const RepairResult& result) {
+  const auto runs = result.runs;
   std::vector<std::string> out;
   const auto effects = proposal.effects.value_or(TraceEffects{});
   if (proposal.changes == Proposal::Changes::kPlan) {
@@ -105,6 +117,9 @@ std::vector<std::string> proposal_sentences(const Proposal& proposal, std::size_
   }
   out.push_back(first + fmt::format("; traces lost: {}, gained: {}.", number_text(effects.lost),
                                     number_text(effects.gained)));
+  const bool may_be_held = proposal.changes != Proposal::Changes::kScenario;
+  if (result.sequences > 0 && may_be_held)
+    out.push_back(validation_sentence(verdict, result.sequences));
   if (proposal.only_begins()) {
     out.emplace_back(
         "It explains the first difference only: no run follows the changed model to its end.");
@@ -192,8 +207,8 @@ std::string repair_text(const RepairResult& result, const RepairOptions& options
       out += "Nearest miss: " + base::printable(result.nearest_miss) + ".\n";
     for (const auto& hint : result.hints) out += base::printable(hint) + ".\n";
     out += fmt::format(
-        "What the model says of states (constraints, definitions) is not edited; `parallax explain "
-        "{}` names the axioms that a run contradicts.\n",
+        "What the model says of timepoint 0 is not edited; `parallax explain {}` names the axioms "
+        "that a run contradicts.\n",
         folder);
     return out;
   }
@@ -227,6 +242,7 @@ std::string repair_json(const RepairResult& result) {
   out["runs"] = result.runs;
   out["failed"] = result.failed;
   out["experiments"] = result.experiments;
+  out["sequences"] = result.sequences;
   out["finished"] = result.finished;
   auto& partings = out["partings"] = Json::array();
   for (const auto& parting : result.partings) {
@@ -279,9 +295,15 @@ std::string repair_json(const RepairResult& result) {
                          {"traces_gained", number_json(effects.gained)},
                          {"reaches_constraints", std::move(reaches)},
                          {"properties", std::move(properties)}});
+    if (result.sequences > 0 && proposal.text) {
+      proposals.back()["sequences_right"] = proposal.verdict.validated;
+      proposals.back()["refuted_by"] = proposal.verdict.refuted_by;
+    }
     if (proposal.under > 0) proposals.back()["under"] = proposal.under;
   }
   out["tied"] = result.tied;
+  auto& founded = out["founded"] = Json::array();
+  for (const auto i : result.founded) founded.push_back(i + 1);
   if (!result.why_tied.empty()) out["why_tied"] = result.why_tied;
   out["tied_hidden"] = result.tied_hidden;
   out["not_compared"] = result.not_compared;

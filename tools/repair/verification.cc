@@ -3,16 +3,74 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
+#include "compiler/base/ground_name.h"
+#include "compiler/repair/closed_triggers.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/session/solver_session.h"
 
 namespace parallax::tools {
 
+namespace {
+
+/// The steps of a sequence up to where the model leaves it.
+std::string steps_of(const Evidence& seen, std::size_t count) {
+  std::string out;
+  for (std::size_t t = 0; t < std::min(count, seen.steps.size()); ++t) {
+    out += (out.empty() ? "" : ", ") + seen.steps[t].event;
+  }
+  return out;
+}
+
+void validate(EvidenceAdmission& admission, const std::vector<Evidence>& further, Verdict& out) {
+  for (const auto& seen : further) {
+    std::optional<std::size_t> refuse_at;
+    if (!seen.steps.empty() && seen.steps.back().failed) refuse_at = seen.steps.size() - 1;
+    const auto answer = admission.ask(seen, refuse_at);
+    if (answer.stopped) return;
+    if (answer.whole) {
+      ++out.validated;
+    } else if (out.refuted_by.empty()) {
+      out.refuted_by = steps_of(seen, answer.reached + 1);
+    }
+  }
+}
+
+/// The text and sentences that nothing happens which neither a run performs nor an axiom demands.
+/// Empty: the model demands no event.
+std::string as_demanded(const std::string& text, const std::vector<Evidence>& evidence,
+                        const std::vector<Evidence>& further) {
+  const auto domain = domain_of_text(text);
+  if (domain == nullptr) return {};
+  std::set<std::string> performed;
+  for (const auto* all : {&evidence, &further}) {
+    for (const auto& seen : *all) {
+      for (const auto& step : seen.steps) performed.insert(base::symbol_of(step.event));
+    }
+  }
+  const auto sentences =
+      compiler::closed_triggers(domain->ast, *domain->typed, domain->forms, performed);
+  return sentences.empty() ? sentences : text + "\n" + sentences;
+}
+
+/// How many of the runs that the model follows to their end it follows with demanded events alone.
+std::size_t runs_undemanded(EvidenceAdmission& strict, const std::vector<Evidence>& whole) {
+  std::size_t out = 0;
+  for (const auto& seen : whole) {
+    const auto answer = strict.ask(seen);
+    if (!answer.stopped && !answer.whole) out += seen.runs();
+  }
+  return out;
+}
+
+}  // namespace
+
 Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
-               const Context& context) {
+               const std::vector<Evidence>& further, const Context& context) {
   std::size_t horizon = 1;
   for (const auto& seen : evidence) horizon = std::max(horizon, seen.steps.size());
+  for (const auto& seen : further) horizon = std::max(horizon, seen.steps.size());
   Verdict out;
   std::string wrong;
   const auto model = compile_text(text, static_cast<std::int64_t>(horizon), context, wrong);
@@ -21,6 +79,7 @@ Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
     return out;
   }
   EvidenceAdmission admission(*model, context.stop());
+  std::vector<Evidence> whole;
   for (const auto& seen : evidence) {
     const auto needed = seen.needed();
     std::optional<std::size_t> refuse_at;
@@ -32,11 +91,25 @@ Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
                                : fmt::format("run {} at {}", seen.ids.front(), answer.reached + 1);
       return out;
     }
-    if (answer.whole) out.runs_whole += seen.runs();
+    if (answer.whole) {
+      out.runs_whole += seen.runs();
+      if (!answer.refused) whole.push_back(seen);
+    }
     if (answer.reached >= seen.seen_to()) out.runs_consistent += seen.runs();
     out.refuses = out.refuses || answer.refused;
   }
   out.admits = true;
+  const auto demanded = as_demanded(text, evidence, further);
+  const auto strict =
+      demanded.empty() ? std::nullopt
+                       : compile_text(demanded, static_cast<std::int64_t>(horizon), context, wrong);
+  if (!strict) {
+    validate(admission, further, out);
+    return out;
+  }
+  EvidenceAdmission strictly(*strict, context.stop());
+  out.runs_undemanded = runs_undemanded(strictly, whole);
+  validate(strictly, further, out);
   return out;
 }
 

@@ -19,10 +19,15 @@ struct Verdict {
   std::size_t runs_whole = 0;       // runs that it admits to their end
   std::size_t runs_consistent = 0;  // to their end, or to where they left the model
   bool refuses = false;             // of a failed run it says that the event cannot happen
+  /// Runs that it admits to their end only if events with triggers may happen undemanded.
+  std::size_t runs_undemanded = 0;
+  std::size_t validated = 0;  // further sequences that it follows to their end
+  std::string refuted_by;     // the first other one: "Call(ground), Enter()"
 };
-/// Compiles `text`, the edited model, and asks a solver about each way that runs went.
+/// Compiles `text`, the edited model, and asks a solver about each way that runs went, and about
+/// further sequences, which it need not admit.
 Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
-               const Context& context);
+               const std::vector<Evidence>& further, const Context& context);
 
 /// Effect of an edit on the traces of the scenario: its model with its plan, up to its horizon.
 struct TraceEffects {

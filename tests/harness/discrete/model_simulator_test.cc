@@ -132,6 +132,9 @@ TEST_CASE("starts: what is not named is drawn among the initial states that fit"
   const auto two = simulator.reset({{"In(A)", true}, {"In(B)", true}}, 1);
   CHECK(two.status == SimStatus::kInvalidStart);
   CHECK(two.reason == "`world.e` has no execution that starts with In(A), In(B)");
+  // Facts of the start that have no part in it are not named.
+  const auto dark = simulator.reset({{"Dark()", true}, {"In(A)", true}, {"In(B)", true}}, 1);
+  CHECK(dark.reason == two.reason);
   CHECK(simulator.reset({{"Out()", true}}, 1).status == SimStatus::kUnsupported);
   CHECK(simulator.reset({{"Dark()", 0.5}}, 1).status == SimStatus::kUnsupported);
   REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);

@@ -188,6 +188,18 @@ TEST_CASE(
   CHECK(not_learned.find("Park:") == std::string::npos);
 }
 
+TEST_CASE("of an event that the model demands it is not said that it never happened") {
+  const TwoModels cli;
+  cli.write("two/lit.e",
+            "load opens.e\nfluent Lit()\n[time] HoldsAt(Lit(),time) -> Happens(Reach(),time).\n");
+  cli.write("two/blind.yaml",
+            "include: agree.yaml\nmodel: [lit.e, start.e]\nmapping: {Lit(): ignored}\nexpect:\n");
+  const auto report = json_of(cli, {"learn", "two/blind.yaml", "--out", "out"});
+  const auto not_learned = report.at("not_learned").dump();
+  CHECK(not_learned.find("Reach: the scenario's model demands it") != std::string::npos);
+  CHECK(not_learned.find("it never happened") == std::string::npos);
+}
+
 TEST_CASE("a budget that is used up: the best model so far, and exit code 4") {
   const TwoModels cli;
   const auto result = cli.parallax({"learn", "two/agree.yaml", "--out", "out", "--max-runs", "3"});

@@ -1,86 +1,99 @@
 // Mistakes in a model with an event that no plan performs: a kettle boils by itself.
 
-#include <doctest/doctest.h>
-
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "tests/tools/cli_json.h"
+#include "tests/tools/repair/mistaken_world.h"
 
 namespace parallax::test {
 namespace {
 
-/// Texts of the model and what stands in their place.
-using Mistakes = std::vector<std::pair<std::string, std::string>>;
+using Mistakes = MistakenWorld::Mistakes;
 
 /// The kettle's world and, as the model, a copy in which texts are replaced.
-struct Kettle : CliFixture {
-  explicit Kettle(const Mistakes& mistakes) {
-    write("truth.e",
-          "fluent Filled()\nfluent On()\nfluent Hot()\nfluent Tea()\n"
-          "event Fill()\nevent SwitchOn()\nevent Boil()\nevent Wait()\nevent Pour()\n\n"
-          "[time] Initiates(Fill(),Filled(),time).\n"
-          "[time] HoldsAt(Filled(),time) -> Initiates(SwitchOn(),On(),time).\n"
-          "[time] HoldsAt(On(),time) -> Happens(Boil(),time).\n"
-          "[time] Happens(Boil(),time) -> HoldsAt(On(),time).\n"
-          "[time] Initiates(Boil(),Hot(),time).\n"
-          "[time] Terminates(Boil(),On(),time).\n"
-          "[time] HoldsAt(Hot(),time) -> Initiates(Pour(),Tea(),time).\n"
-          "[time] Terminates(Pour(),Filled(),time).\n");
-    write("model.e", read("truth.e"));
-    for (const auto& [right, wrong] : mistakes) replace("model.e", right, wrong);
-    write("start.e",
-          "!HoldsAt(Filled(),0).\n!HoldsAt(On(),0).\n!HoldsAt(Hot(),0).\n!HoldsAt(Tea(),0).\n");
-    write("plan.lisp",
-          "(perform (an action (type filling)))\n(perform (an action (type switching)))\n"
-          "(perform (an action (type waiting)))\n(perform (an action (type pouring)))\n");
-    write("robot.bind",
-          "action filling () -> Fill() ok: Filled() @t+1 else manipulation-goal-not-reached\n"
-          "action switching () -> SwitchOn() ok: On() @t+1 else manipulation-goal-not-reached\n"
-          "action waiting () -> Wait() ok: Hot() @t+1 else manipulation-goal-not-reached\n"
-          "action pouring () -> Pour() ok: Tea() @t+1 else manipulation-goal-not-reached\n");
-    write("own.yaml",
-          "plan: plan.lisp\nbind: robot.bind\nhorizon: 4\nmodel: [model.e, start.e]\n"
-          "simulator: {model: truth.e}\nexecution: closed-loop\nconstraints: \"time=4\"\n");
-  }
-
-  nlohmann::json repaired() const {
-    json_of(*this, {"run", "own.yaml", "--out", "out"}, 1);
-    return json_of(*this, {"repair", "out"}, 1);
-  }
-
-  /// The first proposal, applied, makes the next run clean.
-  void check_first() const {
-    const auto report = repaired();
-    CAPTURE(report.dump(1));
-    const auto& first = report.at("proposals").at(0);
-    CHECK(first.at("runs_to_the_end") == first.at("runs"));
-    CHECK(first.at("only_begins") == false);
-    CHECK(parallax({"repair", "out", "--apply", "1"}).code == 0);
-    CHECK(json_of(*this, {"run", "own.yaml", "--epsilon", "0.3", "--out", "again"}).at("verdict") ==
-          "no-discrepancy");
-  }
+struct Kettle : MistakenWorld {
+  explicit Kettle(const Mistakes& mistakes)
+      : MistakenWorld(
+            "fluent Filled()\nfluent On()\nfluent Hot()\nfluent Tea()\n"
+            "event Fill()\nevent SwitchOn()\nevent Boil()\nevent Wait()\nevent Pour()\n\n"
+            "[time] Initiates(Fill(),Filled(),time).\n"
+            "[time] HoldsAt(Filled(),time) -> Initiates(SwitchOn(),On(),time).\n"
+            "[time] HoldsAt(On(),time) -> Happens(Boil(),time).\n"
+            "[time] Happens(Boil(),time) -> HoldsAt(On(),time).\n"
+            "[time] Initiates(Boil(),Hot(),time).\n"
+            "[time] Terminates(Boil(),On(),time).\n"
+            "[time] HoldsAt(Hot(),time) -> Initiates(Pour(),Tea(),time).\n"
+            "[time] Terminates(Pour(),Filled(),time).\n",
+            "!HoldsAt(Filled(),0).\n!HoldsAt(On(),0).\n!HoldsAt(Hot(),0).\n!HoldsAt(Tea(),0).\n",
+            {{"Fill()", "Filled()"},
+             {"SwitchOn()", "On()"},
+             {"Wait()", "Hot()"},
+             {"Pour()", "Tea()"}},
+            mistakes) {}
 };
 
+TEST_CASE("a trigger is missing: the event happens where its precondition holds") {
+  const Kettle cli(Mistakes{{"[time] HoldsAt(On(),time) -> Happens(Boil(),time).\n", ""}});
+  CHECK(cli.first() == "a trigger is missing: `HoldsAt(On(),time) -> Happens(Boil(),time)`");
+}
+
+TEST_CASE("a trigger is missing, and nothing says when the event may happen") {
+  const Kettle cli(Mistakes{{"[time] HoldsAt(On(),time) -> Happens(Boil(),time).\n", ""},
+                            {"[time] Happens(Boil(),time) -> HoldsAt(On(),time).\n", ""}});
+  CHECK(
+      mentions(cli.first(), "a trigger is missing: `HoldsAt(On(),time) -> Happens(Boil(),time)`"));
+}
+
+TEST_CASE("open loop: what the model demands is predicted, and what the plan performs is done") {
+  const Kettle right(Mistakes{});
+  CHECK(json_of(right, {"run", "open.yaml", "--epsilon", "0.3", "--out", "out"}).at("verdict") ==
+        "no-discrepancy");
+  CHECK(right.parallax({"replay", "out", "--sample", "1.1"}).code == 0);
+  const Kettle wrong(Mistakes{
+      {"[time] Initiates(Boil(),Hot(),time).\n", "[time] Initiates(Boil(),Tea(),time).\n"}});
+  // The plan's goal needs what the model does not say: its traces are followed all the same.
+  wrong.replace("robot.bind", "ok: Hot()", "ok: Filled()");
+  wrong.replace("robot.bind", "ok: Tea()", "ok: !Filled()");
+  json_of(wrong, {"run", "open.yaml", "--out", "out"}, 1);
+  const auto report = json_of(wrong, {"repair", "out"}, 1);
+  CAPTURE(report.dump(1));
+  CHECK(mentions(report.at("proposals").at(0).at("words"), "Initiates(Boil(),Hot(),time)"));
+}
+
+TEST_CASE("an effect comes at once, not a step later") {
+  const Kettle cli(Mistakes{{"[time] Initiates(Fill(),Filled(),time).\n",
+                             "[event,time] Happens(Fill(),time-1) & Happens(event,time) -> "
+                             "Initiates(event,Filled(),time).\n"}});
+  CHECK(mentions(cli.first(), "Initiates(Fill(),Filled(),time)"));
+}
+
+TEST_CASE("random sequences of events bear a proposal out, or refute it") {
+  // The plan fills the kettle before it switches it on, so that only they tell.
+  const Kettle cli(
+      Mistakes{{"[time] HoldsAt(Filled(),time) -> Initiates(SwitchOn(),On(),time).\n", ""}});
+  const auto report = cli.repaired();
+  CAPTURE(report.dump(1));
+  CHECK(report.at("sequences").get<int>() > 0);
+  const auto& first = report.at("proposals").at(0);
+  CHECK(first.at("sequences_right") == report.at("sequences"));
+  CHECK(mentions(first.at("words"), "HoldsAt(Filled(),time) -> Initiates(SwitchOn(),On(),time)"));
+  CHECK(mentions(cli.parallax({"repair", "out"}).out, "Also right on "));
+  CHECK(json_of(cli, {"repair", "out", "--runs", "0"}, 1).at("sequences") == 0);
+}
+
 TEST_CASE("an effect of a demanded event is missing") {
-  Kettle(Mistakes{{"[time] Terminates(Boil(),On(),time).\n", ""}}).check_first();
+  Kettle(Mistakes{{"[time] Terminates(Boil(),On(),time).\n", ""}}).first();
 }
 
 TEST_CASE("the trigger has a negated condition") {
-  Kettle(Mistakes{{"HoldsAt(On(),time) -> Happens", "!HoldsAt(On(),time) -> Happens"}})
-      .check_first();
+  Kettle(Mistakes{{"HoldsAt(On(),time) -> Happens", "!HoldsAt(On(),time) -> Happens"}}).first();
 }
 
 TEST_CASE("an effect is written under another event") {
-  Kettle(Mistakes{{"Initiates(Fill(),Filled(),time)", "Initiates(Pour(),Filled(),time)"}})
-      .check_first();
+  Kettle(Mistakes{{"Initiates(Fill(),Filled(),time)", "Initiates(Pour(),Filled(),time)"}}).first();
 }
 
 TEST_CASE("two mistakes in one run: the first proposal mends both") {
   Kettle(Mistakes{{"[time] Terminates(Boil(),On(),time).\n", ""},
                   {"[time] Terminates(Pour(),Filled(),time).\n", ""}})
-      .check_first();
+      .first();
 }
 
 TEST_CASE("a superfluous effect is dropped before its sign is changed") {

@@ -9,7 +9,7 @@
 //
 // Cost: one simulation for each sequence; events are limited.
 
-#include "tools/learn/explorer.h"
+#include "tools/repair/explorer.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,60 @@
+#include "tools/repair/validation.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "compiler/base/temporary_folder.h"
+#include "tools/repair/explorer.h"
+
+namespace parallax::tools {
+namespace {
+
+constexpr std::int64_t kValidationSequences = 40;
+
+/// What a sequence shows up to its first event that the world refused: there the world lets time
+/// pass, and the plan would have been told.
+void end_at_refusal(Evidence& seen) {
+  const auto failed = std::find_if(seen.steps.begin(), seen.steps.end(),
+                                   [](const auto& step) { return step.failed; });
+  if (failed == seen.steps.end()) return;
+  seen.steps.erase(std::next(failed), seen.steps.end());
+  seen.states.resize(std::min(seen.states.size(), seen.steps.size() + 1));
+}
+
+}  // namespace
+
+base::Result<std::vector<Evidence>> validation_runs(const RepairInput& input,
+                                                    const ExperimentOptions& options,
+                                                    Context& context) {
+  auto& sink = context.sink();
+  const bool forbidden = options.runs == 0 || input.options.other_model;
+  if (forbidden || input.loaded.world == nullptr || input.loaded.scenario.plan.empty()) {
+    return std::vector<Evidence>();
+  }
+  const auto before = sink;
+  const auto loaded =
+      load_scenario_model(input.loaded.scenario.file, context,
+                          {.as_run = true, .execution = harness::Execution::kClosedLoop});
+  if (!loaded) {
+    sink = before;  // a plan of traces alone
+    return std::vector<Evidence>();
+  }
+  const auto simulator = options.simulator(*loaded);
+  if (!simulator) return sink.already_reported();
+  const base::TemporaryFolder folder("validation");
+  if (folder.path().empty()) return std::vector<Evidence>();
+  ExploreOptions explore_options;
+  explore_options.seed = input.header.seed;
+  explore_options.count = kValidationSequences;
+  explore_options.run_dir = folder.path() / "run";
+  std::vector<Evidence> known;
+  for (const auto& seen : input.evidence) {
+    if (!seen.ids.front().starts_with('e')) known.push_back(seen);
+  }
+  auto explored = explore(*loaded, known, *simulator, explore_options, context);
+  if (!explored) return sink.already_reported();
+  for (auto& seen : explored->runs) end_at_refusal(seen);
+  return std::move(explored->runs);
+}
+
+}  // namespace parallax::tools
