@@ -33,7 +33,7 @@ std::vector<std::string> function_terms(const TypedModel& model, SortId sort,
 
 /// A text that may stand instead of a formula or term, with its oddity.
 using OtherText = std::pair<std::string, int>;
-/// What a comparison may be instead: the opposite, another relation, a number that is one off, the
+/// Alternatives to a comparison: the opposite, another relation, a number that is one off, the
 /// other one of `+` and `-`, another variable of the sort. Empty for other formulas.
 std::vector<OtherText> other_comparisons(const Ast& ast, NodeId comparison, const TypedModel& model,
                                          const std::vector<SortedVariable>& variables);

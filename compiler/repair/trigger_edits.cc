@@ -63,7 +63,7 @@ class TriggerEdits {
     out_.push_back(std::move(edit));
   }
 
-  /// What the preconditions of the event ask for, as far as it is a fluent each, in its arguments.
+  /// The preconditions of the event that are single fluents, in its arguments.
   std::vector<ConditionLiteral> all_preconditions(const std::string& event,
                                                   const std::vector<std::string>& names) const {
     std::vector<ConditionLiteral> out;

@@ -57,7 +57,7 @@ TEST_CASE("a world of facts shows the paper's second discrepancy") {
   CAPTURE(found.err);
   CHECK(found.code == 1);
   CHECK(has(found.out, "*  7  Go(bSink)      spoon.lisp:11  failed: navigation-pose-unreachable"));
-  // Of the way to the island the model is right.
+  // Up to the island the model is right.
   cram.replace("cram/spoon.lisp", "\n    (drive-to *sink-pose*)))", "))");
   cram.replace("cram/symbolic.yaml", "Happens(Go(bSink),time-1) & HoldsAt(RobotAt(bSink),time)",
                "Happens(Go(bIsland),time-1) & HoldsAt(RobotAt(bIsland),time)");

@@ -12,7 +12,6 @@
 #include "tools/cli/command.h"
 #include "tools/cli/diff_gate.h"
 #include "tools/cli/diff_markdown.h"
-#include "tools/cli/replaceable.h"
 #include "tools/cli/shared_options.h"
 #include "tools/diff/kept_difference.h"
 #include "tools/diff/model_difference.h"
@@ -61,10 +60,8 @@ int print(const DiffOptions& options, const ComparedRevisions& outcome, Invocati
   } else {
     const auto text = outcome.text + (outcome.differs ? "" : "no difference\n");
     invocation.result(text);
-    if (!options.markdown.empty() &&
-        !base::write_output(options.markdown,
-                            diff_markdown(options.old_path, options.new_path, text),
-                            invocation.files(), invocation.sink())) {
+    if (!write_diff_markdown({options.markdown, options.old_path, options.new_path, text},
+                             invocation)) {
       return 0;
     }
   }
@@ -390,11 +387,7 @@ int run_diff(const DiffOptions& given, Invocation& invocation) {
     return run_revision_gate({options.old_path, options.new_path, options.tree}, input,
                              {options.gate, options.markdown}, invocation);
   }
-  const auto is_ours = [](std::string_view head) { return head.starts_with(kDiffMark); };
-  if (!options.markdown.empty() && options.gate.empty() &&
-      !check_replaceable(options.markdown, is_ours, invocation.files(), invocation.sink())) {
-    return 0;
-  }
+  if (options.gate.empty() && !may_write_diff_markdown(options.markdown, invocation)) return 0;
   const auto old_kind = kind_of(options.old_path), new_kind = kind_of(options.new_path);
   const bool models = old_kind && new_kind && has_traces(*old_kind) && has_traces(*new_kind);
   if (!options.gate.empty() && old_kind && (models || old_kind == new_kind)) {

@@ -4,10 +4,17 @@
 
 #include <algorithm>
 
+#include "compiler/base/file_io.h"
 #include "compiler/base/shown_text.h"
+#include "tools/cli/replaceable.h"
 
 namespace parallax::tools {
 namespace {
+
+// The first line, by which such a file is known again.
+constexpr std::string_view kDiffMark = "<!-- parallax diff -->";
+
+bool is_ours(std::string_view head) { return head.starts_with(kDiffMark); }
 
 /// Within a line of prose no character of the text is markup.
 std::string escaped(std::string_view text) {
@@ -31,10 +38,11 @@ std::string fence_for(std::string_view text) {
 
 }  // namespace
 
-std::string diff_markdown(const std::string& old_name, const std::string& new_name,
-                          std::string_view text) {
+std::string diff_markdown(const DiffMarkdown& difference) {
+  const std::string_view text = difference.text;
   const auto fence = fence_for(text);
-  auto out = fmt::format("{}\n## {} and {}\n", kDiffMark, escaped(old_name), escaped(new_name));
+  auto out = fmt::format("{}\n## {} and {}\n", kDiffMark, escaped(difference.old_name),
+                         escaped(difference.new_name));
   bool inside = false;
   for (std::size_t begin = 0; begin < text.size();) {
     const auto end = std::min(text.find('\n', begin), text.size());
@@ -51,6 +59,17 @@ std::string diff_markdown(const std::string& old_name, const std::string& new_na
   }
   if (inside) out += fence + '\n';
   return out;
+}
+
+base::Status may_write_diff_markdown(const std::string& file, Invocation& invocation) {
+  if (file.empty()) return base::Unit{};
+  return check_replaceable(file, is_ours, invocation.files(), invocation.sink());
+}
+
+base::Status write_diff_markdown(const DiffMarkdown& difference, Invocation& invocation) {
+  if (difference.file.empty()) return base::Unit{};
+  return base::write_output(difference.file, diff_markdown(difference), invocation.files(),
+                            invocation.sink());
 }
 
 }  // namespace parallax::tools

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::int64_t kValidationSequences = 40;
 
-/// What a sequence shows up to its first event that the world refused: there the world lets time
-/// pass, and the plan would have been told.
+/// Cuts a sequence at its first event that the world refused: there the world lets time pass, and
+/// the plan would have been told.
 void end_at_refusal(Evidence& seen) {
   const auto failed = std::find_if(seen.steps.begin(), seen.steps.end(),
                                    [](const auto& step) { return step.failed; });

@@ -22,8 +22,8 @@ struct SuiteSelection {
 std::set<std::string> last_names(const StoredResults& earlier, const std::string& history,
                                  const std::function<bool(const SuiteSelection&)>& is_comparable);
 
-/// What a suite that looks at fewer cases hands on, so that it hides none that is gone: the names
-/// of all cases that the results in its folder know, if they are of the same paths.
+/// Names that a suite which looks at fewer cases hands on, so that it hides none that is gone: all
+/// cases that the results in its folder know, if they are of the same paths.
 std::set<std::string> known_names(const StoredResults& earlier, const SuiteIdentity& suite);
 
 /// Cases that the last suite had and that are no cases any more. `names` are all cases of today,

@@ -89,7 +89,7 @@ TEST_CASE("evidence keeps the rule or breaks it, and says what was run") {
   CHECK(trace["old"] == Json{{"runs", 25}, {"lost", 0}, {"discrepancies", 0}});
   CHECK(trace["new"] == Json{{"runs", 25}, {"lost", 0}, {"discrepancies", 25}});
   CHECK(trace["pairs"] == Json{{"equal_starts", 25}, {"gained", 25}, {"mended", 0}});
-  // What the gate says is what the command says that it names.
+  // The gate says the same as the command that it names.
   const auto rates =
       Json::parse(worlds.parallax({"rates", kNew, "--runs", "25", "--seed", "7", "--json"}).out);
   CHECK(rates["traces"][0]["any"]["count"] == 25);

@@ -76,7 +76,7 @@ TEST_CASE("a suite that looks at fewer cases hides none that is gone") {
     const auto options = narrow == "--only" ? std::vector<std::string>{narrow, "both"}
                                             : std::vector<std::string>{narrow};
     const auto looked = cli.suite(options);
-    // What it looks at it tells itself.
+    // A case that the narrow suite looks at is told by itself.
     CHECK(looked.code == (narrow == "--only" ? 0 : 4));
     const auto whole = cli.suite({});
     CHECK(whole.code == (narrow == "--only" ? 4 : 0));
