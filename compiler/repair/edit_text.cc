@@ -76,7 +76,7 @@ std::vector<TextChange> without_nesting(std::vector<TextChange> changes) {
 }
 
 /// Cuts a formula that is named beside its place.
-std::string shortened(std::string formula) {
+std::string cut_formula(std::string formula) {
   constexpr std::size_t kMost = 90;
   if (formula.size() <= kMost) return formula;
   return formula.substr(0, kMost) + "...";
@@ -314,7 +314,7 @@ std::string EditText::words(const std::vector<std::size_t>& chosen) const {
       const auto& form = forms_[edit.axioms.front()];
       const bool of_states = form.kind == AxiomForm::Kind::kState;
       return fmt::format("`{}` ({})",
-                         shortened(print_formula(tree, of_states ? form.body : form.head)),
+                         cut_formula(print_formula(tree, of_states ? form.body : form.head)),
                          place(edit.axioms.front()));
     };
     const auto node = [&] { return print_formula(ast(edit.axioms.front()), edit.node); };
@@ -369,13 +369,13 @@ std::string EditText::words(const std::vector<std::size_t>& chosen) const {
         const auto& first = edit.sentences.front();
         if (!edit.words.empty()) {
           out.push_back(fmt::format("{} {}: `{}{}{}`", axiom(), edit.words,
-                                    shortened(first.condition),
+                                    cut_formula(first.condition),
                                     first.condition.empty() ? "" : " -> ", first.effect));
           break;
         }
         out.push_back(fmt::format(
             "{} comes later, with what happens then: `{} -> {}`{}", axiom(),
-            shortened(first.condition), first.effect,
+            cut_formula(first.condition), first.effect,
             edit.sentences.size() > 1
                 ? fmt::format(", and likewise for {} more events", edit.sentences.size() - 1)
                 : ""));

@@ -27,7 +27,7 @@ namespace parallax::tools {
 namespace {
 
 using Clock = base::SteadyClock;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr auto kSlice = std::chrono::milliseconds(20);
 
@@ -80,7 +80,7 @@ std::int64_t runs_made(const harness::RatesResult& result) {
   return out;
 }
 
-Json counts_json(const harness::RateCounts& counts) {
+OrderedJson counts_json(const harness::RateCounts& counts) {
   return {{"runs", counts.runs - counts.lost},
           {"lost", counts.lost},
           {"discrepancies", counts.failures}};
@@ -156,17 +156,17 @@ std::optional<RatesRevision> Rerunner::side(const RerunSide& side, const char* w
 }
 
 std::string rerun_json(const RerunEvidence& evidence) {
-  Json out = {{"seed", evidence.rule.seed}, {"runs", evidence.rule.runs}};
-  out["problem"] = evidence.problem.empty() ? Json(nullptr) : Json(evidence.problem);
-  out["traces"] = Json::array();
+  OrderedJson out = {{"seed", evidence.rule.seed}, {"runs", evidence.rule.runs}};
+  out["problem"] = evidence.problem.empty() ? OrderedJson(nullptr) : OrderedJson(evidence.problem);
+  out["traces"] = OrderedJson::array();
   for (const auto& trace : evidence.before.traces) {
     const auto* now = rates_for(evidence.after, trace.events);
     if (now == nullptr) continue;
     const auto change = change_of(evidence.before, evidence.after, trace, *now);
-    Json json = {{"trace", trace.events},
-                 {"old", counts_json(change.before)},
-                 {"new", counts_json(change.after)},
-                 {"pairs", nullptr}};
+    OrderedJson json = {{"trace", trace.events},
+                        {"old", counts_json(change.before)},
+                        {"new", counts_json(change.after)},
+                        {"pairs", nullptr}};
     if (change.pairs) {
       using harness::RunResult;
       const auto parted = change.pairs->discordant(RunResult::kFailure, RunResult::kClean);

@@ -261,17 +261,6 @@ std::string causes(const std::vector<PageData>& pages) {
                     table_of("Causes", "<th scope=\"col\">Cause</th>" + column_heads(pages), rows));
 }
 
-/// Text of several lines, each escaped by itself: a line's end is no character to be escaped.
-std::string html_lines(std::string_view text) {
-  std::string out;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const auto end = std::min(text.find('\n', begin), text.size());
-    out += html(text.substr(begin, end - begin)) + '\n';
-    begin = end + 1;
-  }
-  return out;
-}
-
 /// The changes of the scenarios, as `parallax diff` words them.
 std::string changed(const std::vector<PageData>& pages, const std::vector<std::string>& changes) {
   constexpr std::size_t kMostBytes = 20'000;

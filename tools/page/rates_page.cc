@@ -52,13 +52,13 @@ std::string count_text(const CauseRate& rate, std::int64_t runs) {
 
 /// A name in lines that fit into the plot; at most three.
 std::vector<std::string> name_lines(const std::string& name) {
-  constexpr std::size_t kWide = 54, kLines = 3;
+  constexpr std::size_t kLineLength = 54, kLines = 3;
   std::vector<std::string> out;
   for (std::string_view rest = name; !rest.empty() && out.size() < kLines;) {
-    auto end = std::min(rest.size(), kWide);
+    auto end = std::min(rest.size(), kLineLength);
     if (end < rest.size()) {
       const auto space = rest.rfind(' ', end);
-      if (space != rest.npos && space > kWide / 2) end = space;
+      if (space != rest.npos && space > kLineLength / 2) end = space;
       while (end < rest.size() && base::continues_code_point(rest[end])) ++end;
     }
     out.emplace_back(rest.substr(0, end));
