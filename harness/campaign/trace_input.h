@@ -35,10 +35,16 @@ struct CampaignTrace : runtime::Trace {
   const std::string& event(std::size_t t) const {
     return plan[t].event.empty() ? symbols->name(points[t].happens.front()) : plan[t].event;
   }
-  /// All events: "Go(r2) PickUp()".
+  /// All events: "Go(r2) PickUp()", with those that are demanded: "Push()+Ring()".
   std::string events() const {
     std::string out;
-    for (std::size_t t = 0; t < event_count(); ++t) out += (t == 0 ? "" : " ") + event(t);
+    for (std::size_t t = 0; t < event_count(); ++t) {
+      out += (t == 0 ? "" : " ") + event(t);
+      if (points[t].happens.size() < 2) continue;
+      for (const auto other : points[t].happens) {
+        if (symbols->name(other) != event(t)) out += "+" + symbols->name(other);
+      }
+    }
     return out;
   }
 };

@@ -26,7 +26,7 @@ TEST_CASE("an initial state that leads to no trace is named") {
   CAPTURE(open.err);
   CHECK(open.code == 0);
   CHECK_MESSAGE(has(open.out,
-                    "bound     1 initial state of the model leads to no trace and is not "
+                    "bound     1 initial state leads to no trace up to the horizon and is not "
                     "simulated: BoxIn(r1)\n"),
                 open.out);
   const auto report = nlohmann::json::parse(cli.read("open/report.json"));

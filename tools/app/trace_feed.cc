@@ -189,27 +189,50 @@ base::Result<StateWeights> EnumeratedTraces::weights_of(
   return start_weights(*loaded_, states, told_by, value, *context_);
 }
 
+/// Does nothing happen in it that is neither performed nor demanded?
+base::Known EnumeratedTraces::is_closed(const harness::CampaignTrace& trace) {
+  const auto& points = trace.points;
+  const bool several = std::any_of(points.begin(), points.end(),
+                                   [](const auto& point) { return point.happens.size() > 1; });
+  if (!several) return base::Known::kYes;
+  if (!closed_world_) {
+    closed_world_.emplace(*model_, runtime::make_cadical_solver(&context_->stop()));
+  }
+  std::vector<std::string> performed;
+  for (std::size_t t = 0; t < trace.event_count(); ++t) performed.push_back(trace.event(t));
+  return closed_world_->admits(trace, performed);
+}
+
 base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next_trace() {
-  auto trace = enumerator_->next();
-  const bool is_stopped = enumerator_->exploration() == runtime::Exploration::kStopped;
-  if (trace && (trace->other_initial_states == base::Known::kUndecided ||
-                trace->other_outcomes == base::Known::kUndecided)) {
-    // The solver was stopped: nothing would be simulated, and the caveats are not known.
-    return std::optional<harness::CampaignTrace>();
+  constexpr std::optional<harness::CampaignTrace> kNone;
+  for (;;) {
+    auto trace = enumerator_->next();
+    const bool is_stopped = enumerator_->exploration() == runtime::Exploration::kStopped;
+    if (trace && (trace->other_initial_states == base::Known::kUndecided ||
+                  trace->other_outcomes == base::Known::kUndecided)) {
+      // The solver was stopped: nothing would be simulated, and the caveats are not known.
+      return kNone;
+    }
+    if (!trace) {
+      if (given_ == 0 && !is_stopped && !explain_absence()) {
+        return context_->sink().already_reported();
+      }
+      return kNone;
+    }
+    trace->number = given_ + 1;
+    auto converted = campaign_trace(*model_, *std::move(trace), *context_);
+    if (!converted) return context_->sink().already_reported();
+    const auto closed = is_closed(*converted);
+    if (closed == base::Known::kUndecided) return kNone;
+    if (closed == base::Known::kNo) continue;
+    given_ = converted->number;
+    if (unreached_) unreached_->note(*converted);
+    // Traces with the same events are distinguished by their initial states.
+    if (split_initial_) {
+      converted->key += fmt::format(" from {}", fmt::join(converted->holds(0), ";"));
+    }
+    return std::optional<harness::CampaignTrace>(*std::move(converted));
   }
-  if (!trace) {
-    if (given_ == 0 && !is_stopped && !explain_absence())
-      return context_->sink().already_reported();
-    return std::optional<harness::CampaignTrace>();
-  }
-  given_ = trace->number;
-  auto converted = campaign_trace(*model_, *std::move(trace), *context_);
-  if (!converted) return context_->sink().already_reported();
-  if (unreached_) unreached_->note(*converted);
-  // Traces with the same events are distinguished by their initial states.
-  if (split_initial_)
-    converted->key += fmt::format(" from {}", fmt::join(converted->holds(0), ";"));
-  return std::optional<harness::CampaignTrace>(*std::move(converted));
 }
 
 std::string EnumeratedTraces::exploration() const {

@@ -9,6 +9,7 @@
 
 #include "compiler/artifact/compiled_model.h"
 #include "harness/campaign/trace_input.h"
+#include "runtime/enumerate/closed_world.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/context.h"
 #include "tools/app/scenario_model.h"
@@ -47,6 +48,7 @@ class EnumeratedTraces final : public harness::TraceFeed {
  private:
   base::Status explain_absence() const;
   base::Result<std::optional<harness::CampaignTrace>> next_trace();
+  base::Known is_closed(const harness::CampaignTrace& trace);
   base::Result<bool> has_weight(const harness::CampaignTrace& trace);
   base::Status end_of_weights();
   base::Result<StateWeights> weights_of(const std::vector<std::vector<compiler::FluentId>>& states,
@@ -69,6 +71,7 @@ class EnumeratedTraces final : public harness::TraceFeed {
   std::unique_ptr<runtime::PlanEnumerator> enumerator_;
   std::int64_t given_ = 0;  // the number of the last trace
   std::optional<UnreachedStarts> unreached_;
+  std::optional<runtime::ClosedWorld> closed_world_;  // made where axioms demand events
 };
 
 /// The trace as campaigns have it, with what the plan says of its events. Reports

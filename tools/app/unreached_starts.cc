@@ -64,8 +64,9 @@ std::vector<std::string> UnreachedStarts::texts(Context& context) const {
     if (!exclude(model, fluents_, state, session)) return {};
   }
   std::vector<State> found;
+  auto status = runtime::SolveStatus::kUnsatisfiable;
   while (found.size() < kMostCounted &&
-         session.solve(0, {}) == runtime::SolveStatus::kSatisfiable) {
+         (status = session.solve(0, {})) == runtime::SolveStatus::kSatisfiable) {
     auto& state = found.emplace_back();
     for (const auto fluent : fluents_) {
       const auto literal = model.holds_at(fluent, 0);
@@ -89,9 +90,10 @@ std::vector<std::string> UnreachedStarts::texts(Context& context) const {
     names.push_back(words.empty() ? "none of what differs holds"
                                   : fmt::format("{}", fmt::join(words, ", ")));
   }
-  const bool more = found.size() == kMostCounted;
+  const bool more = status != runtime::SolveStatus::kUnsatisfiable;
   return {fmt::format(
-      "{}{} of the model {} to no trace and {} not simulated: {}{}", more ? "at least " : "",
+      "{}{} {} to no trace up to the horizon and {} not simulated: {}{}",
+      more ? "at least " : "",
       base::counted(static_cast<std::int64_t>(found.size()), "initial state", "initial states"),
       found.size() == 1 ? "leads" : "lead", found.size() == 1 ? "is" : "are",
       fmt::join(names, "; "), found.size() > names.size() ? "; ..." : "")};

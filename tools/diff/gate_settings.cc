@@ -1,10 +1,13 @@
 // Rules of a gate about the settings of scenarios, beside model and plan.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "harness/config/scenario_settings.h"
 #include "tools/diff/gate.h"
@@ -98,6 +101,25 @@ RuleOutcome worse_of(RuleOutcome a, RuleOutcome b) {
 
 }  // namespace
 
+namespace {
+
+/// Changed facts of a world that is a model, a line each: they change what is simulated as much as
+/// a setting does.
+std::vector<std::string> changed_world_facts(const ModelDifference& found) {
+  std::vector<std::string> out;
+  const auto add = [&](char mark, const compiler::Fact& fact) {
+    if (fact.text.starts_with(kWorldFact))
+      out.push_back(fmt::format("  {} {}\n", mark, fact.shown));
+  };
+  const auto &before = found.old_side.facts, &after = found.new_side.facts;
+  for (const auto i : found.facts.removed) add('-', before[i]);
+  for (const auto i : found.facts.added) add('+', after[i]);
+  for (const auto& [i, j] : found.facts.changed) add('~', after[j]);
+  return out;
+}
+
+}  // namespace
+
 RuleResult setting_rule(const ModelDifference& found, const harness::GateRules::SettingRule& rule) {
   RuleResult out{"models." + rule.name, RuleOutcome::kKept, "none changed"};
   if (!found.settings) {
@@ -111,6 +133,19 @@ RuleResult setting_rule(const ModelDifference& found, const harness::GateRules::
     if (!concerns(rule, change)) continue;
     out.outcome = worse_of(out.outcome, outcome_of(rule.demand, change));
     changes.push_back(change);
+  }
+  const bool of_world =
+      rule.name == "physics" || rule.name == "simulator" || rule.name == "settings";
+  const auto facts = of_world ? changed_world_facts(found) : std::vector<std::string>();
+  if (!facts.empty()) {
+    out.outcome =
+        worse_of(out.outcome, rule.demand == Demand::kForbidden ? RuleOutcome::kBroken
+                                                                : RuleOutcome::kUndecided);
+    const auto count = changes.size() + facts.size();
+    out.words =
+        fmt::format("{} changed, {} of them in the model that is the world", count, facts.size());
+    out.witness = settings_text(changes, false) + fmt::format("{}", fmt::join(facts, ""));
+    return out;
   }
   if (changes.empty()) return out;
   out.words = changes.size() == 1 ? change_text(changes.front())

@@ -76,7 +76,7 @@ void add_world_facts(const harness::Scenario& scenario, const compiler::LoadOpti
   add_text_facts(models, load, world);
   for (auto& fact : world) {
     for (auto* text : {&fact.key, &fact.text, &fact.shown}) {
-      if (!text->empty()) text->insert(0, "world: ");
+      if (!text->empty()) text->insert(0, kWorldFact);
     }
     facts.push_back(std::move(fact));
   }

@@ -14,6 +14,9 @@
 
 namespace parallax::tools {
 
+/// What stands before the facts of a world that is a model.
+inline constexpr std::string_view kWorldFact = "world: ";
+
 enum class RevisionKind : std::uint8_t {
   kModel,     // .e
   kArtifact,  // .dec.cnf

@@ -59,11 +59,24 @@ class SameFiles {
     std::error_code error;
     const auto kind = fs::status(a, error).type();
     if (kind != fs::status(b, error).type()) return false;
-    // The files that count in a named folder are inputs themselves.
-    if (kind == fs::file_type::not_found || kind == fs::file_type::directory) return true;
+    if (kind == fs::file_type::not_found) return true;
+    // Files that count in a named folder are inputs themselves, but only on the side that has them.
+    if (kind == fs::file_type::directory) return listing(a) == listing(b);
     base::DiagnosticSink unread;
     const auto x = base::read_file(a, unread), y = base::read_file(b, unread);
     return x && y && *x == *y;
+  }
+
+  /// Names of all that lies in a folder, relative to it.
+  static std::set<std::string> listing(const fs::path& folder) {
+    std::set<std::string> out;
+    std::error_code error;
+    fs::recursive_directory_iterator at(folder, error), end;
+    for (; !error && at != end; at.increment(error)) {
+      out.insert(at->path().lexically_relative(folder).string());
+    }
+    if (error) out.insert(folder.string());  // differs from the other side in any case
+    return out;
   }
 
   fs::path before_, after_;

@@ -239,5 +239,43 @@ TEST_CASE("the program of an external simulator is that of each folder") {
   trees.check(trees.gate({"../a", "."}, inside), 1, kOtherProgram);
 }
 
+/// scenarios/two_models below each of two folders, with the plan in a folder of its own.
+void put_two_models(const Trees& trees) {
+  for (const std::string tree : {"a", "b"}) {
+    fs::copy(fs::path(PARALLAX_SOURCE_DIR) / "scenarios" / "two_models", trees.folder() / tree);
+    fs::create_directory(trees.folder() / tree / "plan");
+    fs::rename(trees.folder() / tree / "open_and_close.lisp",
+               trees.folder() / tree / "plan" / "a.lisp");
+    trees.replace(tree + "/common.yaml", "plan: open_and_close.lisp", "plan: plan");
+  }
+}
+
+TEST_CASE("a file that only one side has in a plan's folder is a change") {
+  const Trees trees;
+  put_two_models(trees);
+  trees.put("rules.yaml", "models: {axioms: forbidden, declarations: forbidden}\n");
+  trees.check(trees.gate({"a", "b"}), 0, "no file of 3 scenarios changed");
+  trees.put("b/plan/b.lisp",
+            "(def-cram-function more () (perform (an action (type parking-arms))))\n");
+  const auto more = trees.gate({"a", "b"});
+  CHECK_MESSAGE(more.code == 1, more.out, more.err);
+  trees.put("b/plan/b.lisp", "(def-cram-function more (\n");
+  const auto broken = trees.gate({"a", "b"});
+  CHECK_MESSAGE(broken.code != 0, broken.out, broken.err);
+}
+
+TEST_CASE("a model that is the world belongs to the physics") {
+  const Trees trees;
+  put_two_models(trees);
+  trees.put("rules.yaml", "models: {physics: forbidden}\n");
+  trees.check(trees.gate({"a", "b"}), 0, "no file of 3 scenarios changed");
+  trees.replace("b/unparks.e", "Terminates(", "Releases(");
+  trees.check(trees.gate({"a", "b"}), 1, "in the model that is the world");
+  // With evidence instead the two are run.
+  trees.put("rules.yaml", "models: {physics: {rerun: {runs: 20, seconds: 60}}}\n");
+  const auto run = trees.gate({"a", "b"});
+  CHECK_MESSAGE(run.out.find("20 runs of each trace") != std::string::npos, run.out, run.err);
+}
+
 }  // namespace
 }  // namespace parallax::test
