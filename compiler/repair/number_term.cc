@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::int64_t kMostNumerals = 16;
 constexpr std::size_t kMostFunctionTerms = 12;  // of one function
+constexpr std::size_t kMostTerms = 16;          // of all functions
 
 bool is_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
@@ -168,6 +169,7 @@ std::vector<std::string> function_terms(const TypedModel& model, SortId sort,
                                         const std::vector<SortedVariable>& variables) {
   std::vector<std::string> out;
   for (const auto& symbol : model.symbols) {
+    if (out.size() >= kMostTerms) break;
     if (symbol.kind != SymbolKind::kFunction || !symbol.result || symbol.arguments.empty())
       continue;
     if (!model.sorts_overlap(*symbol.result, sort)) continue;

@@ -27,7 +27,7 @@ std::optional<bool> compares(const ConditionLiteral& literal,
                              const std::map<std::string, std::string>& values);
 
 /// Terms over these variables with the value of a declared function: "Price(item)", for functions
-/// whose values fit the sort.
+/// whose values fit the sort; of many functions those that are declared first.
 std::vector<std::string> function_terms(const TypedModel& model, SortId sort,
                                         const std::vector<SortedVariable>& variables);
 

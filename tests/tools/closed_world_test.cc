@@ -47,6 +47,7 @@ TEST_CASE("a model with triggers is not found wrong against itself") {
   // Where nothing ever demands the event it does not happen.
   kettle.replace("kettle.lisp", "(perform (an action (type switching)))\n", "");
   kettle.replace("kettle.bind", "ok: Hot() @t+1", "ok: Filled() @t+1");
+  kettle.replace("kettle.yaml", "time=3", "time=2");
   const auto cold = kettle.parallax({"run", "kettle.yaml", "--epsilon", "0.5", "--out", "cold"});
   CHECK_MESSAGE(cold.code == 0, cold.out, cold.err);
 }

@@ -64,6 +64,11 @@ int apply(const RepairResult& result, const RepairCommandOptions& options, Invoc
   if (!apply_proposal(proposal, write_gate(options.repair.folder, invocation), invocation))
     return 0;
   tell_written(proposal.files, proposal.read_by_world, invocation);
+  if (proposal.agrees_less) {
+    invocation.remark(fmt::format(
+        "the model agreed with {} of the runs before, and with {} now: other proposals fit better",
+        result.runs - result.failed, proposal.verdict.runs_whole));
+  }
   return 0;
 }
 
@@ -75,6 +80,7 @@ int exit_code(LoopEnd end) {
       return 0;
     case LoopEnd::kTie:
     case LoopEnd::kPlanAtFault:
+    case LoopEnd::kRefuted:
     case LoopEnd::kRounds:
       return kProposals;
     case LoopEnd::kNone:

@@ -47,10 +47,10 @@ class Experiments {
   base::Result<RepairResult> run() {
     if (!repeat()) return context_.sink().already_reported();
     if (!first_.partings.empty() && !context_.stopped()) {
-      auto further = validation_runs(first_, experiments_, context_);
-      if (!further) return context_.sink().already_reported();
-      first_.validation = *std::move(further);
-      if (last_) last_->validation = first_.validation;
+      auto sequences = random_sequences(first_, experiments_, context_);
+      if (!sequences) return context_.sink().already_reported();
+      first_.sequences = *std::move(sequences);
+      if (last_) last_->sequences = first_.sequences;
     }
     auto proposed = propose_repairs(last_ ? *last_ : first_, context_);
     if (!proposed) return proposed;
@@ -230,7 +230,7 @@ class Experiments {
     auto wide = first_.options;
     auto input = load_repair_input(wide, context_);
     if (!input) return context_.sink().already_reported();
-    input->validation = first_.validation;
+    input->sequences = first_.sequences;
     auto proposed = propose_repairs(*input, context_);
     if (!proposed) return context_.sink().already_reported();
     result = *std::move(proposed);
@@ -291,6 +291,7 @@ class Experiments {
       result.more = true;
     }
     result.tied_hidden = result.tied - std::min(result.tied, all.size());
+    hold_against_sequences(first_, result, context_);
     result.remarks.insert(result.remarks.begin(), remarks_.begin(), remarks_.end());
     return result;
   }

@@ -2,10 +2,10 @@
 //
 // Every second sequence repeats the beginning of a run that is known, of random length, so that
 // states far from the start are reached too; a few random events follow. Events are those that
-// the plan performs, with its arguments, and all other instances of their symbols that can be
-// called without arguments of a plan. Draws come from a counter-based generator keyed by the
-// seed and the number of the sequence, so a sequence does not depend on those before it. A
-// sequence that cannot be simulated is skipped with a remark.
+// the plan performs, with its arguments, and all other instances of their symbols (or of all
+// symbols) that can be called without arguments of a plan. Draws come from a counter-based
+// generator keyed by the seed and the number of the sequence, so a sequence does not depend on
+// those before it. A sequence that cannot be simulated is skipped with a remark.
 //
 // Cost: one simulation for each sequence; events are limited.
 
@@ -150,15 +150,20 @@ class SequenceExplorer {
         events_.push_back(std::move(perform));
       }
     }
+    bool others = false, drawn = false;
     for (std::uint32_t i = 0; i < symbols_->event_count(); ++i) {
       if (events_.size() > kMostEvents) break;
       harness::PlannedPerform other;
       other.event = symbols_->name(compiler::EventId(i));
-      if (!symbols.contains(base::symbol_of(other.event))) continue;
+      const bool of_plan = symbols.contains(base::symbol_of(other.event));
+      others = others || !of_plan;
+      if (!of_plan && !options_.all_events) continue;
       if (names.insert(other.event).second && can_be_called(other)) {
+        drawn = drawn || !of_plan;
         events_.push_back(std::move(other));
       }
     }
+    out_.of_plan = others && !drawn;
   }
 
   std::uint64_t draw(const harness::CounterRng& random, std::uint64_t place,

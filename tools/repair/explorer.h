@@ -18,6 +18,8 @@ struct ExploreOptions {
   std::uint64_t seed = 1;
   std::int64_t jobs = 1;
   std::int64_t first = 1, count = 1;  // numbers of the sequences
+  /// Draws from all events of the model that the world can be asked for, not the plan's alone.
+  bool all_events = false;
   std::filesystem::path run_dir;
   std::string tool_version;
   std::function<void(const harness::CampaignProgress&)> progress;
@@ -27,13 +29,14 @@ struct Explored {
   std::vector<Evidence> runs;        // ids "7.1": the number of the sequence, and its sample
   std::int64_t made = 0;             // simulations
   std::vector<std::string> skipped;  // sequences that could not be simulated, and why
+  bool of_plan = false;              // the model has other events, and the plan's alone were drawn
 };
 
 /// Simulates random sequences of events, each once, and records them in a run folder. The events
-/// are those that the plan performs, with the plan's arguments, and the same with other arguments
-/// where the scenario's action needs nothing of the plan. Every other sequence begins with a part
-/// of one of `known`. `loaded` was loaded for closed loop. Reports what claiming the folder and
-/// starting the simulator report.
+/// are those that the plan performs, with the plan's arguments, and the same (or, if asked for, all
+/// of the model's) with other arguments where the action needs nothing of the plan. Every other
+/// sequence begins with a part of one of `known`. `loaded` was loaded for closed loop. Reports what
+/// claiming the folder and starting the simulator report.
 base::Result<Explored> explore(const ScenarioModel& loaded, const std::vector<Evidence>& known,
                                const harness::SimulatorFactory& make_simulator,
                                const ExploreOptions& options, Context& context);

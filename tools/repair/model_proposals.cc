@@ -76,7 +76,7 @@ class ModelSearch {
   /// Is some proposal right on all random sequences of events, if there are any?
   bool is_borne_out() const {
     return std::any_of(result_.proposals.begin(), result_.proposals.end(), [&](const auto& each) {
-      return !each.open && each.verdict.validated == input_.validation.size();
+      return !each.open && each.verdict.validated == input_.sequences.choosing.size();
     });
   }
 
@@ -252,7 +252,7 @@ class ModelSearch {
     const auto changes = texts.changes(set);
     Proposal proposal;
     proposal.text = compiler::flat_text(domain_.ast, domain_.files, changes);
-    proposal.verdict = verify(*proposal.text, evidence, input_.validation, context_);
+    proposal.verdict = verify(*proposal.text, evidence, input_.sequences.choosing, context_);
     if (!proposal.verdict.admits) {
       result_.remarks.push_back(
           fmt::format("not proposed, as the check of its text says no: {} ({})", texts.words(set),
@@ -278,10 +278,11 @@ class ModelSearch {
   }
 
   /// Adds conditions to a new effect or trigger, one after the other, as long as random sequences
-  /// bear out more of it: the runs, which it explains without them, ask for none.
+  /// bear out more of it: the runs, which it explains without them, ask for none. All that bear out
+  /// as much are proposed, as these sequences cannot tell which is right.
   void refine(Mode mode) {
     const auto& known = searches_[mode];
-    if (input_.validation.empty() || !known || !known->search || is_borne_out()) return;
+    if (input_.sequences.choosing.empty() || !known || !known->search || is_borne_out()) return;
     const auto& edits = known->guarded->edits;
     const compiler::EditText texts(domain_.ast, domain_.files, domain_.forms, edits,
                                    files_of_world());
@@ -297,7 +298,7 @@ class ModelSearch {
     constexpr int kMostConditions = 3;
     for (int round = 0; round < kMostConditions && !best.second.empty(); ++round) {
       const auto of = *std::find_if(best.second.begin(), best.second.end(), is_new);
-      std::optional<Proposal> found;
+      std::vector<Proposal> found;
       auto improved = best;
       for (std::size_t i = of + 1; i < edits.size() && !context_.stopped(); ++i) {
         if (edits[i].kind != Edit::Kind::kAddCondition || edits[i].of != of) break;
@@ -306,13 +307,18 @@ class ModelSearch {
         set.push_back(i);
         std::sort(set.begin(), set.end());
         auto proposal = proposal_of(*known, texts, set, evidence_, mode);
-        if (!proposal || proposal->verdict.validated <= improved.first) continue;
-        improved = {proposal->verdict.validated, std::move(set)};
-        found = std::move(proposal);
+        if (!proposal || proposal->verdict.validated <= best.first) continue;
+        const auto right = proposal->verdict.validated;
+        if (right < improved.first) continue;
+        if (right > improved.first) {
+          improved = {right, std::move(set)};
+          found.clear();
+        }
+        found.push_back(*std::move(proposal));
       }
-      if (!found) return;
+      if (found.empty()) return;
       best = std::move(improved);
-      result_.proposals.push_back(*std::move(found));
+      for (auto& each : found) result_.proposals.push_back(std::move(each));
       if (is_borne_out()) return;
     }
   }

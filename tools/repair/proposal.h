@@ -40,11 +40,16 @@ struct Proposal {
   Verdict verdict;
   std::size_t unexplained = 0;  // runs that count against it in the ranking
   std::size_t unvalidated = 0;  // likewise, random sequences
+  bool agrees_less = false;     // with fewer runs to their end than the unchanged model
   bool is_told_cause = false;   // a split of the start that the runs show to be the cause
   /// It explains the first difference, and no run follows it to its end.
   bool only_begins() const {
     const bool of_model = changes == Changes::kModel || changes == Changes::kBinding;
     return of_model && !precaution && verdict.runs_whole == 0;
+  }
+  /// Is it held against random sequences? One that leaves an outcome open would admit either.
+  bool meets_sequences() const {
+    return (changes == Changes::kModel || changes == Changes::kBinding) && text && !open;
   }
   /// Effect on the traces. For a change of the model alone, computed by the ranking.
   std::optional<TraceEffects> effects;

@@ -1,6 +1,7 @@
 // The order of proposals.
 //
-// First come proposals that follow most runs to their end; those that follow none come last. Among
+// First come proposals that follow most runs to their end; those that follow none come last, and
+// behind them those that agree with fewer runs than the unchanged model does. Among
 // them a split of the start comes first where the runs show that it is the cause, then what most of
 // the random sequences of events bear out. Then they are ordered by size, then precautions before
 // splits of the start before other changes, then specific ones before those that let anything
@@ -30,8 +31,9 @@ int group_of(const Proposal& proposal) {
 
 bool likelier(const Proposal& a, const Proposal& b) {
   const auto key = [](const Proposal& each) {
-    return std::tuple(each.only_begins(), each.unexplained, !each.is_told_cause, each.unvalidated,
-                      each.size, group_of(each), each.open, ~each.verdict.runs_whole, each.oddity);
+    return std::tuple(each.agrees_less, each.only_begins(), each.unexplained, !each.is_told_cause,
+                      each.unvalidated, each.size, group_of(each), each.open,
+                      ~each.verdict.runs_whole, each.oddity);
   };
   return key(a) < key(b);
 }
@@ -52,18 +54,21 @@ void count_unexplained(std::size_t runs, std::vector<Proposal>& proposals) {
   }
 }
 
-/// The same for random sequences of events.
+/// The same for random sequences of events. A split of the start, which is not held against them,
+/// counts as no better than the best that is, either.
 void count_unvalidated(std::size_t sequences, std::vector<Proposal>& proposals) {
   auto least = sequences;
   for (auto& each : proposals) {
-    const bool sets_aside = each.precaution || each.changes == Proposal::Changes::kScenario;
-    each.unvalidated = sets_aside ? 0
-                                  : sequences - std::min(sequences, each.verdict.validated) +
-                                        each.verdict.runs_undemanded;
-    if (!each.open) least = std::min(least, each.unvalidated);
+    each.unvalidated =
+        sequences - std::min(sequences, each.verdict.validated) + each.verdict.runs_undemanded;
+    if (each.meets_sequences()) least = std::min(least, each.unvalidated);
   }
   for (auto& each : proposals) {
-    if (each.open) each.unvalidated = std::max(each.unvalidated, least);
+    if (each.changes == Proposal::Changes::kScenario) {
+      each.unvalidated = least;
+    } else if (each.open) {
+      each.unvalidated = std::max(each.unvalidated, least);
+    }
   }
 }
 
@@ -126,10 +131,17 @@ bool clearly_behind(const Proposal& proposal, const Proposal& other) {
 Unranked rank_proposals(const RepairInput& input, std::size_t limit,
                         std::vector<Proposal>& proposals, Context& context) {
   count_unexplained(input.runs, proposals);
-  count_unvalidated(input.validation.size(), proposals);
+  count_unvalidated(input.sequences.choosing.size(), proposals);
+  for (auto& each : proposals) {
+    each.agrees_less = each.verdict.runs_whole < input.runs - std::min(input.runs, input.failed);
+  }
   std::stable_sort(proposals.begin(), proposals.end(), likelier);
-  if (input.experiments > 0) drop_refuted(proposals);
   Unranked out;
+  if (!proposals.empty() && proposals.front().agrees_less) {
+    out.agree_less = proposals.size();
+    proposals.clear();
+  }
+  if (input.experiments > 0) drop_refuted(proposals);
   const auto wanted = limit == 0 ? proposals.size() : limit;
   if (proposals.size() > std::max(wanted, kMostCompared)) {
     const auto kept = std::max(wanted, kMostCompared);

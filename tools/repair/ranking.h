@@ -9,7 +9,8 @@ namespace parallax::tools {
 
 /// Proposals that the ranking left out.
 struct Unranked {
-  bool more = false;             // there were more
+  bool more = false;           // there were more
+  std::size_t agree_less = 0;  // none agrees with as many runs as the unchanged model: no proposals
   std::size_t not_compared = 0;  // of them were as likely as the first, before traces were compared
 };
 

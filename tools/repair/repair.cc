@@ -1,8 +1,11 @@
 #include "tools/repair/repair.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 
+#include "compiler/base/words.h"
 #include "tools/repair/model_proposals.h"
 #include "tools/repair/plan_proposals.h"
 #include "tools/repair/properties.h"
@@ -68,6 +71,21 @@ const char* name_of(Proposal::Changes changes) {
   return "";
 }
 
+void hold_against_sequences(const RepairInput& input, RepairResult& result,
+                            const Context& context) {
+  for (auto& proposal : result.proposals) {
+    if (!proposal.meets_sequences() || input.sequences.fresh.empty()) continue;
+    hold_against(*proposal.text, input.sequences.fresh, context, proposal.verdict);
+  }
+  result.sequences = context.stopped() ? 0 : input.sequences.fresh.size();
+}
+
+bool is_refuted(const Proposal& proposal, const RepairResult& result) {
+  return result.sequences > 0 && proposal.meets_sequences() &&
+         (proposal.verdict.validated < result.choosing ||
+          proposal.verdict.fresh_right < result.sequences);
+}
+
 base::Result<RepairResult> propose_repairs(const RepairOptions& options, Context& context) {
   const auto input = load_repair_input(options, context);
   if (!input) return context.sink().already_reported();
@@ -107,11 +125,19 @@ base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& co
     if (proposal.changes == Proposal::Changes::kScenario) continue;  // it says so itself
     for (const auto& cause : result.causes) proposal.evidence.push_back(cause.words);
   }
-  result.sequences = input.validation.size();
+  result.choosing = input.sequences.choosing.size();
+  result.sequences_of_plan = input.sequences.of_plan;
   const auto left_out = rank_proposals(input, static_cast<std::size_t>(input.options.limit),
                                        result.proposals, context);
   result.more = result.more || left_out.more;
   result.not_compared = left_out.not_compared;
+  if (left_out.agree_less > 0) {
+    result.hints.push_back(
+        fmt::format("{} {} with fewer runs than the unchanged model, and {} not proposed",
+                    base::counted(left_out.agree_less, "change"),
+                    base::agreed(left_out.agree_less, "agrees", "agree"),
+                    base::agreed(left_out.agree_less, "is", "are")));
+  }
   if (result.proposals.empty()) return result;
   result.tied = of_first_rank(result.proposals);
   result.founded = as_well_founded(result.proposals);

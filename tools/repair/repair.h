@@ -23,7 +23,9 @@ struct RepairResult {
   std::string nearest_miss;  // where there is no proposal; may be empty
   std::vector<std::string> remarks, hints;
   bool finished = true;              // the run came to a verdict of its own
-  std::size_t sequences = 0;         // random ones that the proposals were held against
+  std::size_t sequences = 0;         // fresh random ones that the proposals were held against
+  std::size_t choosing = 0;          // others, by which they were chosen
+  bool sequences_of_plan = false;    // all of them are of the plan's events alone
   std::size_t experiments = 0;       // of the runs were made to tell proposals apart
   std::vector<std::string> refuted;  // proposals, in words, that these have refuted
   /// Proposals that no run refutes but that others outranked: the number of proposals is limited.
@@ -48,6 +50,11 @@ base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& co
 /// from which they start, so that the number of a proposal does not depend on how many are shown.
 /// Then checks all against the requested properties. Reports a text that is not a property.
 base::Status add_plan_proposals(const RepairInput& input, RepairResult& result, Context& context);
+
+/// Holds the proposals against the fresh random sequences.
+void hold_against_sequences(const RepairInput& input, RepairResult& result, const Context& context);
+/// Does one of the random sequences refute it?
+bool is_refuted(const Proposal& proposal, const RepairResult& result);
 
 /// Evidence of the runs for a proposal, and its cost, as sentences.
 std::vector<std::string> proposal_sentences(const Proposal& proposal, const RepairResult& result);

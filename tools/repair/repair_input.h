@@ -34,6 +34,13 @@ struct RunParting {
   Evidence::State seen;          // there, unlike what the model says
 };
 
+/// Random sequences of events, simulated.
+struct RandomSequences {
+  std::vector<Evidence> choosing;  // order the proposals, and ask for conditions
+  std::vector<Evidence> fresh;     // others, which have no part in that: what is said rests on them
+  bool of_plan = false;            // of the plan's events alone, though the model has others
+};
+
 /// Input of a repair: the scenario as it was run, its recorded runs, and where the model cannot
 /// follow.
 struct RepairInput {
@@ -54,7 +61,7 @@ struct RepairInput {
   std::vector<std::string> contradictions = {};
   std::vector<std::string> remarks = {};
   /// Random sequences of events that the proposals are held against (validation_runs).
-  std::vector<Evidence> validation = {};
+  RandomSequences sequences = {};
 };
 
 /// Do both have the same events up to `t`, through the same states before the last of them?

@@ -5,8 +5,9 @@
 // runs of all earlier rounds as well, so rounds cannot undo each other. Changes are made in
 // copies of the files that the scenario reads; the user's files are only read. The next campaign
 // draws with another seed, since the starts of the repair are clean by construction. It ends
-// clean only if no initial state has lost its way to the constraints: a model that admits
-// nothing would be clean as well. Cost: one repair and one campaign for each round.
+// clean only if no initial state has lost its way to the constraints (a model that admits
+// nothing would be clean as well) and no random sequence of events refutes what was applied. Cost:
+// one repair and one campaign for each round.
 
 #include "tools/repair/repair_loop.h"
 
@@ -141,6 +142,8 @@ class Rounds {
     if (!files) return sink.already_reported();
     first->files = *std::move(files);
     if (!apply_proposal(*first, base::WriteGate(true), context_)) return sink.already_reported();
+    refuted_by_.reset();
+    if (is_refuted(*first, *found)) refuted_by_ = first->verdict.refuted_by;
     round.words = first->words;
     round.effects = first->effects;
     round.patch = patch_from_here(first->files);
@@ -247,14 +250,21 @@ class Rounds {
     return false;
   }
 
+  /// What was applied last is the whole model, which other events may refute.
+  void end_without_loss() {
+    if (!refuted_by_) return end(LoopEnd::kClean, "the run after it is clean");
+    end(LoopEnd::kRefuted, "the run after it is clean, but a random sequence of events refutes " +
+                               (refuted_by_->empty() ? "the model" : "it: " + *refuted_by_));
+  }
+
   /// A run is also clean if the trace that went wrong no longer exists.
   void end_clean(const compiler::CompiledModel& model) {
     const auto& before = original_->compilation.model;
     if (!before.has_constraints || !model.has_constraints) {
-      return end(LoopEnd::kClean, "the run after it is clean");
+      return end_without_loss();
     }
     const auto starts = lost_starts(before, model, context_.stop());
-    if (starts.lost == 0) return end(LoopEnd::kClean, "the run after it is clean");
+    if (starts.lost == 0) return end_without_loss();
     end(LoopEnd::kPlanAtFault,
         fmt::format(
             "the run after it is clean, but from {} of {}{} initial states the constraints "
@@ -281,16 +291,17 @@ class Rounds {
   harness::JournalHeader header_;
   std::optional<ScenarioModel> original_;  // what was run at first
   std::optional<ScenarioCopy> copy_;
-  std::vector<Evidence> evidence_;  // of the rounds that were
+  std::vector<Evidence> evidence_;         // of the rounds that were
+  std::optional<std::string> refuted_by_;  // a random sequence refutes what was applied last
   RepairLoop loop_;
 };
 
 }  // namespace
 
 std::string_view to_string(LoopEnd end) {
-  static constexpr std::string_view kWords[] = {"clean",       "nothing-to-repair", "tie",
-                                                "no-proposal", "plan-at-fault",     "inconclusive",
-                                                "rounds",      "stopped",           "failed"};
+  static constexpr std::string_view kWords[] = {
+      "clean",   "nothing-to-repair", "tie",    "no-proposal", "plan-at-fault",
+      "refuted", "inconclusive",      "rounds", "stopped",     "failed"};
   return kWords[static_cast<std::size_t>(end)];
 }
 

@@ -27,6 +27,7 @@ enum class LoopEnd : std::uint8_t {
   kNone,          // no proposal
   kPlanAtFault,   // with what was repaired no trace, or none from some starts that had one, reaches
                   // the constraints
+  kRefuted,       // a run without discrepancy, but random sequences of events refute the change
   kInconclusive,  // the run decided nothing
   kRounds,        // the limit of rounds was reached
   kStopped,

@@ -67,13 +67,19 @@ void add_properties(const Proposal& proposal, std::vector<std::string>& out) {
 }
 
 /// What random sequences of events say of a proposal.
-std::string validation_sentence(const Verdict& verdict, std::size_t sequences) {
+std::string validation_sentence(const Proposal& proposal, const RepairResult& result) {
   constexpr std::size_t kMost = 80;  // characters of a sequence
-  const auto all = base::counted(sequences, "random sequence") + " of events";
-  if (verdict.validated >= sequences) return "Also right on " + all + ".";
+  const auto& verdict = proposal.verdict;
+  const auto all = base::counted(result.sequences, "fresh random sequence") +
+                   (result.sequences_of_plan ? " of the plan's events" : " of events");
+  if (!is_refuted(proposal, result)) return "Also right on " + all + ".";
+  const auto chosen = verdict.validated < result.choosing
+                          ? fmt::format(", and on {} of the {} that ordered the proposals",
+                                        verdict.validated, result.choosing)
+                          : "";
   auto steps = verdict.refuted_by;
   if (steps.size() > kMost) steps = "..." + steps.substr(steps.size() - kMost);
-  return fmt::format("Right on {} of {}; refuted by {}.", verdict.validated, all,
+  return fmt::format("Right on {} of {}{}; refuted by {}.", verdict.fresh_right, all, chosen,
                      steps.empty() ? "the first state of one" : steps);
 }
 
@@ -117,9 +123,17 @@ std::vector<std::string> proposal_sentences(const Proposal& proposal, const Repa
   }
   out.push_back(first + fmt::format("; traces lost: {}, gained: {}.", number_text(effects.lost),
                                     number_text(effects.gained)));
-  const bool may_be_held = proposal.changes != Proposal::Changes::kScenario;
-  if (result.sequences > 0 && may_be_held)
-    out.push_back(validation_sentence(verdict, result.sequences));
+  if (result.sequences > 0 && proposal.meets_sequences())
+    out.push_back(validation_sentence(proposal, result));
+  if (verdict.runs_undemanded > 0) {
+    out.push_back(fmt::format(
+        "It follows {} only if events happen that nothing demands, and comes later for that.",
+        base::counted(verdict.runs_undemanded, "run")));
+  }
+  if (proposal.agrees_less) {
+    out.push_back(fmt::format("The unchanged model agrees with more runs: {}, this one with {}.",
+                              runs - result.failed, verdict.runs_whole));
+  }
   if (proposal.only_begins()) {
     out.emplace_back(
         "It explains the first difference only: no run follows the changed model to its end.");
@@ -243,6 +257,8 @@ std::string repair_json(const RepairResult& result) {
   out["failed"] = result.failed;
   out["experiments"] = result.experiments;
   out["sequences"] = result.sequences;
+  out["sequences_choosing"] = result.choosing;
+  out["sequences_of_plan"] = result.sequences_of_plan;
   out["finished"] = result.finished;
   auto& partings = out["partings"] = Json::array();
   for (const auto& parting : result.partings) {
@@ -291,12 +307,15 @@ std::string repair_json(const RepairResult& result) {
                          {"runs_consistent", proposal.verdict.runs_consistent},
                          {"runs_to_the_end", proposal.verdict.runs_whole},
                          {"runs", result.runs},
+                         {"runs_undemanded", proposal.verdict.runs_undemanded},
+                         {"agrees_less", proposal.agrees_less},
                          {"traces_lost", number_json(effects.lost)},
                          {"traces_gained", number_json(effects.gained)},
                          {"reaches_constraints", std::move(reaches)},
                          {"properties", std::move(properties)}});
-    if (result.sequences > 0 && proposal.text) {
-      proposals.back()["sequences_right"] = proposal.verdict.validated;
+    if (result.sequences > 0 && proposal.meets_sequences()) {
+      proposals.back()["sequences_right"] = proposal.verdict.fresh_right;
+      proposals.back()["choosing_right"] = proposal.verdict.validated;
       proposals.back()["refuted_by"] = proposal.verdict.refuted_by;
     }
     if (proposal.under > 0) proposals.back()["under"] = proposal.under;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string>
+#include <utility>
 
 #include "compiler/base/temporary_folder.h"
 #include "tools/repair/explorer.h"
@@ -9,7 +11,7 @@
 namespace parallax::tools {
 namespace {
 
-constexpr std::int64_t kValidationSequences = 40;
+constexpr std::int64_t kSequences = 40;  // to choose by, and as many fresh ones
 
 /// Cuts a sequence at its first event that the world refused: there the world lets time pass, and
 /// the plan would have been told.
@@ -23,13 +25,12 @@ void end_at_refusal(Evidence& seen) {
 
 }  // namespace
 
-base::Result<std::vector<Evidence>> validation_runs(const RepairInput& input,
-                                                    const ExperimentOptions& options,
-                                                    Context& context) {
+base::Result<RandomSequences> random_sequences(const RepairInput& input,
+                                               const ExperimentOptions& options, Context& context) {
   auto& sink = context.sink();
   const bool forbidden = options.runs == 0 || input.options.other_model;
   if (forbidden || input.loaded.world == nullptr || input.loaded.scenario.plan.empty()) {
-    return std::vector<Evidence>();
+    return RandomSequences();
   }
   const auto before = sink;
   const auto loaded =
@@ -37,15 +38,16 @@ base::Result<std::vector<Evidence>> validation_runs(const RepairInput& input,
                           {.as_run = true, .execution = harness::Execution::kClosedLoop});
   if (!loaded) {
     sink = before;  // a plan of traces alone
-    return std::vector<Evidence>();
+    return RandomSequences();
   }
   const auto simulator = options.simulator(*loaded);
   if (!simulator) return sink.already_reported();
   const base::TemporaryFolder folder("validation");
-  if (folder.path().empty()) return std::vector<Evidence>();
+  if (folder.path().empty()) return RandomSequences();
   ExploreOptions explore_options;
   explore_options.seed = input.header.seed;
-  explore_options.count = kValidationSequences;
+  explore_options.count = 2 * kSequences;
+  explore_options.all_events = true;
   explore_options.run_dir = folder.path() / "run";
   std::vector<Evidence> known;
   for (const auto& seen : input.evidence) {
@@ -53,8 +55,20 @@ base::Result<std::vector<Evidence>> validation_runs(const RepairInput& input,
   }
   auto explored = explore(*loaded, known, *simulator, explore_options, context);
   if (!explored) return sink.already_reported();
-  for (auto& seen : explored->runs) end_at_refusal(seen);
-  return std::move(explored->runs);
+  RandomSequences out;
+  out.of_plan = explored->of_plan;
+  for (auto& seen : explored->runs) {
+    end_at_refusal(seen);
+    // Each is drawn by its number alone, so that the later ones are fresh unless they are equal.
+    const bool chooses = std::stoll(seen.ids.front()) <= kSequences;
+    const bool known_already =
+        std::any_of(out.choosing.begin(), out.choosing.end(), [&](const Evidence& other) {
+          return other.steps == seen.steps && other.states == seen.states;
+        });
+    if (chooses) out.choosing.push_back(std::move(seen));
+    if (!chooses && !known_already) out.fresh.push_back(std::move(seen));
+  }
+  return out;
 }
 
 }  // namespace parallax::tools

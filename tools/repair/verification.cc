@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <utility>
 
 #include "compiler/base/ground_name.h"
 #include "compiler/repair/closed_triggers.h"
@@ -37,22 +37,33 @@ void validate(EvidenceAdmission& admission, const std::vector<Evidence>& further
   }
 }
 
-/// The text and sentences that nothing happens which neither a run performs nor an axiom demands.
-/// Empty: the model demands no event.
-std::string as_demanded(const std::string& text, const std::vector<Evidence>& evidence,
-                        const std::vector<Evidence>& further) {
-  const auto domain = domain_of_text(text);
-  if (domain == nullptr) return {};
-  std::set<std::string> performed;
-  for (const auto* all : {&evidence, &further}) {
-    for (const auto& seen : *all) {
-      for (const auto& step : seen.steps) performed.insert(base::symbol_of(step.event));
-    }
+/// A model in which nothing happens that is neither performed nor demanded. Its text is empty where
+/// the model demands no event.
+struct StrictModel {
+  std::string text;
+  std::vector<std::string> closed;  // symbols of events
+
+  explicit StrictModel(const std::string& of) {
+    const auto domain = domain_of_text(of);
+    if (domain == nullptr) return;
+    auto closing = compiler::closed_triggers(domain->ast, domain->files, *domain->typed);
+    closed = std::move(closing.symbols);
+    if (!closed.empty()) text = of + "\n" + closing.text;
   }
-  const auto sentences =
-      compiler::closed_triggers(domain->ast, *domain->typed, domain->forms, performed);
-  return sentences.empty() ? sentences : text + "\n" + sentences;
-}
+
+  /// The same runs, with what was performed at each step.
+  std::vector<Evidence> told(std::vector<Evidence> all) const {
+    for (auto& seen : all) {
+      for (std::size_t t = 0; t < seen.steps.size() && t < seen.states.size(); ++t) {
+        const auto performed = base::symbol_of(seen.steps[t].event);
+        for (const auto& symbol : closed) {
+          seen.states[t][compiler::performed_fluent(symbol)] = symbol == performed;
+        }
+      }
+    }
+    return all;
+  }
+};
 
 /// How many of the runs that the model follows to their end it follows with demanded events alone.
 std::size_t runs_undemanded(EvidenceAdmission& strict, const std::vector<Evidence>& whole) {
@@ -99,18 +110,26 @@ Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
     out.refuses = out.refuses || answer.refused;
   }
   out.admits = true;
-  const auto demanded = as_demanded(text, evidence, further);
+  const StrictModel demanded(text);
   const auto strict =
-      demanded.empty() ? std::nullopt
-                       : compile_text(demanded, static_cast<std::int64_t>(horizon), context, wrong);
+      demanded.text.empty()
+          ? std::nullopt
+          : compile_text(demanded.text, static_cast<std::int64_t>(horizon), context, wrong);
   if (!strict) {
     validate(admission, further, out);
     return out;
   }
   EvidenceAdmission strictly(*strict, context.stop());
-  out.runs_undemanded = runs_undemanded(strictly, whole);
-  validate(strictly, further, out);
+  out.runs_undemanded = runs_undemanded(strictly, demanded.told(whole));
+  validate(strictly, demanded.told(further), out);
   return out;
+}
+
+void hold_against(const std::string& text, const std::vector<Evidence>& fresh,
+                  const Context& context, Verdict& verdict) {
+  const auto held = verify(text, {}, fresh, context);
+  verdict.fresh_right = held.validated;
+  if (!held.refuted_by.empty()) verdict.refuted_by = held.refuted_by;
 }
 
 TraceComparer::TraceComparer(const ScenarioModel& loaded, const std::string& text, Context& context)

@@ -21,13 +21,18 @@ struct Verdict {
   bool refuses = false;             // of a failed run it says that the event cannot happen
   /// Runs that it admits to their end only if events with triggers may happen undemanded.
   std::size_t runs_undemanded = 0;
-  std::size_t validated = 0;  // further sequences that it follows to their end
-  std::string refuted_by;     // the first other one: "Call(ground), Enter()"
+  std::size_t validated = 0;    // sequences, that chose it, that it follows to their end
+  std::size_t fresh_right = 0;  // and fresh ones (hold_against)
+  std::string refuted_by;       // the first other one: "Call(ground), Enter()"
 };
 /// Compiles `text`, the edited model, and asks a solver about each way that runs went, and about
 /// further sequences, which it need not admit.
 Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
                const std::vector<Evidence>& further, const Context& context);
+
+/// Asks about fresh sequences, too.
+void hold_against(const std::string& text, const std::vector<Evidence>& fresh,
+                  const Context& context, Verdict& verdict);
 
 /// Effect of an edit on the traces of the scenario: its model with its plan, up to its horizon.
 struct TraceEffects {

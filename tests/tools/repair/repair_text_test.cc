@@ -62,5 +62,45 @@ TEST_CASE("refuted, crowded out, not compared: each by itself, in JSON and in wo
         std::string::npos);
 }
 
+TEST_CASE("what random sequences say, of which events, and what decided the rank") {
+  auto result = with_one_proposal();
+  const auto json = [&] {
+    return nlohmann::json::parse(repair_json(result)).at("proposals").at(0);
+  };
+  const auto says = [&](const std::string& part) {
+    return repair_text(result, {}).find(part) != std::string::npos;
+  };
+  auto& proposal = result.proposals.front();
+  proposal.text = "";
+  result.sequences = 38;
+  result.choosing = 40;
+  proposal.verdict.fresh_right = 38;
+  proposal.verdict.validated = 40;
+  CHECK(says("Also right on 38 fresh random sequences of events."));
+  CHECK(json().at("sequences_right") == 38);
+  result.sequences_of_plan = true;
+  CHECK(says("Also right on 38 fresh random sequences of the plan's events."));
+  proposal.verdict.validated = 37;
+  proposal.verdict.refuted_by = "Pull()";
+  CHECK(
+      says("Right on 38 of 38 fresh random sequences of the plan's events, and on 37 of the 40 "
+           "that ordered the proposals; refuted by Pull()."));
+  CHECK(is_refuted(proposal, result));
+
+  CHECK_FALSE(says("only if events happen that nothing demands"));
+  proposal.verdict.runs_undemanded = 2;
+  CHECK(says("It follows 2 runs only if events happen that nothing demands"));
+  CHECK(json().at("runs_undemanded") == 2);
+  proposal.agrees_less = true;
+  CHECK(says("The unchanged model agrees with more runs"));
+  CHECK(json().at("agrees_less") == true);
+
+  // What leaves an outcome open admits either one.
+  proposal.open = true;
+  CHECK_FALSE(says("random sequence"));
+  CHECK_FALSE(json().contains("sequences_right"));
+  CHECK_FALSE(is_refuted(proposal, result));
+}
+
 }  // namespace
 }  // namespace parallax::tools
