@@ -338,9 +338,7 @@ Step ProofSearch::call(const std::string& function, const Arguments& arguments, 
                        ValueId& out) {
   std::vector<ValueId> given;
   for (const auto argument : arguments) {
-    auto value = terms.value(argument);
-    // A free variable is its own name to a function, as in CRAM.
-    if (!value && terms.is_variable(argument)) value = terms.name_of_variables();
+    const auto value = terms.value(argument);
     if (!value) return wrong(at, function, "an argument is not bound to anything");
     given.push_back(*value);
   }
