@@ -309,7 +309,7 @@ class MethodReader {
     return out;
   }
 
-  /// Of two methods for the same types the last one is left. Types of which we do not know which is
+  /// The last of several methods for the same types is left. Types of which we do not know which is
   /// the more special one are refused.
   std::optional<StructureError> add(Method method, std::vector<Method>& methods) const {
     for (auto& other : methods) {
