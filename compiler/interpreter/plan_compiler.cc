@@ -199,9 +199,8 @@ class PlanCompiler {
       return c_.unsupported(form, "a method of what makes things");
     }
     if (!reach_.contains(name) || !made_generics_.insert(name).second) return;
-    if (c_.defined.functions.contains(name)) {
-      return c_.unsupported(form, fmt::format("`{}` is defined twice", name));
-    }
+    if (defined_.contains(name)) return;  // a `defun` stands for it
+    if (c_.defined.functions.contains(name)) return c_.unsupported(form, "it is defined twice");
     if (const auto generic = generics_.find(name); generic != generics_.end()) {
       return add_function(generic->second, name, c_.data.children(generic->second));
     }
