@@ -61,13 +61,9 @@ BuiltinResult compute_now(const BuiltinCall& c, const std::string& operation,
     }
     return out;
   }
-  auto name = operation;
-  if (operation.size() > 3 && operation.starts_with("fl-")) {
-    name = operation.substr(3);
-  } else if (operation.starts_with("fl")) {
-    name = operation.substr(2);
-  }
-  const auto builtin = find_builtin(name);
+  const bool word = operation.size() > 3 && operation.starts_with("fl-");
+  const std::size_t prefix = word ? 3 : operation.starts_with("fl") ? 2 : 0;
+  const auto builtin = find_builtin(operation.substr(prefix));
   if (!builtin) return BuiltinFailure{BuiltinError::kValue, "no function on fluents"};
   return call_builtin(*builtin, arguments, c.classes, c.location_samples, c.links, c.values);
 }
@@ -146,16 +142,15 @@ BuiltinResult set_value(const BuiltinCall& c) {
 
 BuiltinResult make_table(const BuiltinCall& c) {
   const auto test = keyword_argument(c, 0, "test");
-  std::string name = "eql";
-  if (test && c.values.kind(*test) == ValueKind::kSymbol) name = c.values[*test].text;
+  auto name = test ? c.values[*test].text : "eql";
   if (test && c.values.kind(*test) == ValueKind::kFunction) {
     const auto& function = c.values[*test].function;
     name = function.builtin ? std::string(plan_builtins()[function.unit].name) : "";
   }
-  if (name != "eq" && name != "eql" && name != "equal" && name != "equalp") {
-    return BuiltinFailure{BuiltinError::kValue, "the test is eq, eql, equal or equalp"};
+  if (name != "eq" && name != "eql" && name != "equal") {
+    return BuiltinFailure{BuiltinError::kValue, "the test is eq, eql or equal"};
   }
-  const auto what = name.starts_with("equal") ? kEqualTable : kTable;
+  const auto what = name == "equal" ? kEqualTable : kTable;
   return c.links.make_cell(c.values, std::string(what), c.values.nil());
 }
 
@@ -168,6 +163,11 @@ std::variant<std::pair<Pairs, std::size_t>, BuiltinFailure> find_key(const Built
   if (!is_cell(c, c.args[table], kTable)) return c.wrong(table, "a hash table");
   const bool structure = is_cell(c, c.args[table], kEqualTable);
   const auto is_model = [&](ValueId id) { return c.values.kind(id) == ValueKind::kModel; };
+  const auto kind = c.values.kind(c.args[key]);
+  if (!structure && (kind == ValueKind::kString || kind == ValueKind::kCons)) {
+    return BuiltinFailure{BuiltinError::kValue,
+                          "a string or list as key needs a table with the test equal"};
+  }
   auto pairs = *c.values.elements(content_of(c, c.args[table]));
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const auto known = c.values[pairs[i]].head;
@@ -198,11 +198,8 @@ BuiltinResult set_hash(const BuiltinCall& c) {
   if (const auto* failure = std::get_if<BuiltinFailure>(&found)) return *failure;
   auto& [pairs, at] = std::get<0>(found);
   const auto pair = c.values.cons(c.args[0], c.args[2]);
-  if (at < pairs.size()) {
-    pairs[at] = pair;
-  } else {
-    pairs.push_back(pair);
-  }
+  if (at == pairs.size()) pairs.emplace_back();
+  pairs[at] = pair;
   c.links.heap.change(c.values, c.args[1], c.values.list(pairs));
   return c.args[2];
 }
@@ -230,17 +227,16 @@ BuiltinResult table_pairs(const BuiltinCall& c) {
   return content_of(c, c.args[0]);
 }
 
-BuiltinResult table_parts(const BuiltinCall& c, bool keys) {
+template <bool kKeys>
+BuiltinResult table_parts(const BuiltinCall& c) {
   if (!is_cell(c, c.args[0], kTable)) return c.wrong(0, "a hash table");
   std::vector<ValueId> out;
   const auto pairs = *c.values.elements(content_of(c, c.args[0]));
   for (const auto pair : pairs) {
-    out.push_back(keys ? c.values[pair].head : c.values[pair].tail);
+    out.push_back(kKeys ? c.values[pair].head : c.values[pair].tail);
   }
   return c.values.list(out);
 }
-BuiltinResult table_keys(const BuiltinCall& c) { return table_parts(c, true); }
-BuiltinResult table_values(const BuiltinCall& c) { return table_parts(c, false); }
 
 BuiltinResult table_size(const BuiltinCall& c) {
   if (!is_cell(c, c.args[0], kTable)) return c.wrong(0, "a hash table");
@@ -265,6 +261,13 @@ ValueId make_elements(const BuiltinCall& c, const std::vector<ValueId>& dimensio
                            c.values.cons(c.values.list(dimensions), c.values.list(elements)));
 }
 
+/// Stands where nothing was put: to read it is a mistake in the plan.
+constexpr std::string_view kUnset = "%unset";
+
+bool is_unset(const BuiltinCall& c, ValueId id) {
+  return c.values.kind(id) == ValueKind::kSymbol && c.values[id].text == kUnset;
+}
+
 std::optional<std::size_t> natural_value(const BuiltinCall& c, ValueId id) {
   const auto& value = c.values[id];
   const bool fits = value.kind == ValueKind::kNumber && value.number.is_integer() &&
@@ -282,7 +285,8 @@ BuiltinResult make_array(const BuiltinCall& c) {
     size *= *length;
     if (size > kMaxPlanValues) return c.wrong(0, "so many elements as fit");
   }
-  const auto all = keyword_argument(c, 1, "initial-element").value_or(c.values.nil());
+  const auto all =
+      keyword_argument(c, 1, "initial-element").value_or(c.values.symbol(std::string(kUnset)));
   std::vector<ValueId> elements(size, all);
   if (const auto given = keyword_argument(c, 1, "initial-contents")) {
     auto known = c.values.elements(*given);
@@ -294,9 +298,13 @@ BuiltinResult make_array(const BuiltinCall& c) {
   return make_elements(c, *dimensions, elements);
 }
 
+ValueId vector_of(const BuiltinCall& c, const std::vector<ValueId>& items) {
+  const auto length = c.values.number(Number(static_cast<std::int64_t>(items.size())));
+  return make_elements(c, {length}, items);
+}
+
 BuiltinResult make_vector(const BuiltinCall& c) {
-  const auto length = c.values.number(Number(static_cast<std::int64_t>(c.args.size())));
-  return make_elements(c, {length}, {c.args.begin(), c.args.end()});
+  return vector_of(c, {c.args.begin(), c.args.end()});
 }
 
 struct Element {
@@ -328,6 +336,7 @@ BuiltinResult aref(const BuiltinCall& c) {
   const auto found = array_element(c, c.args.subspan(1));
   if (const auto* failure = std::get_if<BuiltinFailure>(&found)) return *failure;
   const auto& known = std::get<Element>(found);
+  if (is_unset(c, known.all[known.at])) return c.wrong(0, "an array with a value there");
   return known.all[known.at];
 }
 
@@ -349,7 +358,14 @@ BuiltinResult array_dimensions(const BuiltinCall& c) {
 
 /// (%elements sequence): those of an array, a list or a string as a list.
 BuiltinResult sequence_elements(const BuiltinCall& c) {
-  if (is_cell(c, c.args[0], kArray)) return c.values[content_of(c, c.args[0])].tail;
+  if (is_cell(c, c.args[0], kArray)) {
+    const auto all = c.values[content_of(c, c.args[0])].tail;
+    const auto items = *c.values.elements(all);
+    for (const auto item : items) {
+      if (is_unset(c, item)) return c.wrong(0, "an array with a value everywhere");
+    }
+    return all;
+  }
   if (!c.values.elements(c.args[0])) return c.wrong(0, "an array");
   return c.args[0];
 }
@@ -361,9 +377,7 @@ BuiltinResult coerce(const BuiltinCall& c) {
   if (type.text == "vector" || type.text == "array" || type.text == "simple-vector") {
     if (is_cell(c, c.args[0], kArray)) return c.args[0];
     const auto items = c.values.elements(c.args[0]);
-    if (!items) return c.wrong(0, "a list");
-    const auto length = c.values.number(Number(static_cast<std::int64_t>(items->size())));
-    return make_elements(c, {length}, *items);
+    return items ? BuiltinResult(vector_of(c, *items)) : c.wrong(0, "a list");
   }
   const bool wide = type.text == "double-float";
   if (!wide && type.text != "float" && type.text != "single-float") {
@@ -395,18 +409,25 @@ std::optional<std::size_t> place_of(const BuiltinCall& c, const std::vector<Valu
   return std::nullopt;
 }
 
-/// (%set-slot structure slot value), and without value what it holds. A thing of another kind is a
-/// Lisp error.
+/// Is the structure of the type, or of one that includes it?
+bool has_type(const BuiltinCall& c, ValueId structure, ValueId type) {
+  return c.values[structure].text.find(' ' + c.values[type].text + ' ') != std::string::npos;
+}
+
+/// (slot-value structure slot), (%typed-slot structure slot type), (%set-slot structure slot value
+/// [type]). A thing of another kind is a Lisp error.
 BuiltinResult structure_slot(const BuiltinCall& c) {
+  const bool sets = c.name == "%set-slot";
+  const std::size_t type = sets ? 3 : 2;
   const BuiltinFailure other{BuiltinError::kRaise, "type-error"};
-  if (!is_cell(c, c.args[0], kStructure)) {
-    if (c.values.kind(c.args[0]) == ValueKind::kUnknown) return c.wrong(0, "a structure");
-    return other;
-  }
+  if (c.values.kind(c.args[0]) == ValueKind::kUnknown) return c.wrong(0, "a structure");
+  if (!is_cell(c, c.args[0], kStructure)) return other;
   auto slots = *c.values.elements(content_of(c, c.args[0]));
   const auto at = place_of(c, slots);
-  if (!at) return other;
-  if (c.args.size() == 2) return c.values[slots[*at]].tail;
+  if (!at || (c.args.size() > type && !has_type(c, c.args[0], c.args[type]))) return other;
+  const auto held = c.values[slots[*at]].tail;
+  if (!sets && is_unset(c, held)) return c.wrong(0, "a structure with a value in that slot");
+  if (!sets) return held;
   slots[*at] = c.values.cons(c.args[1], c.args[2]);
   c.links.heap.change(c.values, c.args[0], c.values.list(slots));
   return c.args[2];
@@ -420,10 +441,7 @@ BuiltinResult copy_structure(const BuiltinCall& c) {
 
 /// (%structure-p value type)
 BuiltinResult is_structure(const BuiltinCall& c) {
-  const auto& value = c.values[c.args[0]];
-  if (!is_cell(c, c.args[0], kStructure)) return c.values.nil();
-  return c.values.boolean(value.text.find(' ' + c.values[c.args[1]].text + ' ') !=
-                          std::string::npos);
+  return c.values.boolean(is_cell(c, c.args[0], kStructure) && has_type(c, c.args[0], c.args[1]));
 }
 
 constexpr BuiltinEntry kCellTable[] = {
@@ -449,8 +467,8 @@ constexpr BuiltinEntry kCellTable[] = {
     {{"remhash", 2, 2}, remove_hash},
     {{"clrhash", 1, 1}, clear_hash},
     {{"hash-table-count", 1, 1}, table_size},
-    {{"hash-table-keys", 1, 1}, table_keys},
-    {{"hash-table-values", 1, 1}, table_values},
+    {{"hash-table-keys", 1, 1}, table_parts<true>},
+    {{"hash-table-values", 1, 1}, table_parts<false>},
     {{"hash-table-alist", 1, 1}, table_pairs},
     {{"hash-table-p", 1, 1}, is_what<kTable>},
     {{"make-array", 1, kAnyNumber}, make_array},
@@ -465,7 +483,8 @@ constexpr BuiltinEntry kCellTable[] = {
     {{"coerce", 2, 2}, coerce},
     {{"%make-structure", 1, kAnyNumber}, make_structure},
     {{"slot-value", 2, 2}, structure_slot},
-    {{"%set-slot", 3, 3}, structure_slot},
+    {{"%typed-slot", 3, 3}, structure_slot},
+    {{"%set-slot", 3, 4}, structure_slot},
     {{"copy-structure", 1, 1}, copy_structure},
     {{"%structure-p", 2, 2}, is_structure},
     {{"fluent-p", 1, 1}, is_any_fluent},

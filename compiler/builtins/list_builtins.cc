@@ -144,6 +144,7 @@ BuiltinResult assoc(const BuiltinCall& c) {
 constexpr BuiltinEntry kListTable[] = {
     {{"eq", 2, 2}, same<false>},
     {{"eql", 2, 2}, same<false>},
+    {{"%same", 2, 2}, same<false>},
     {{"equal", 2, 2}, same<true>},
     {{"null", 1, 1}, is_null},
     {{"not", 1, 1}, is_null},

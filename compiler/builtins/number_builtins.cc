@@ -251,6 +251,7 @@ BuiltinResult power(const BuiltinCall& c) {
     return c.wrong(1, "an integer from -1000 to 1000");
   }
   Number out(1);
+  if (c.number(0)->is_float()) out = out.as_float(c.number(0)->kind());
   for (std::int64_t i = 0; i < std::abs(exponent.numerator()); ++i) out = out * *c.number(0);
   if (exponent.numerator() >= 0) return c.values.number(out);
   const auto inverse = divide(Number(1), out);

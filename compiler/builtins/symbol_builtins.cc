@@ -149,9 +149,15 @@ BuiltinResult ordered_texts(const BuiltinCall& c) {
 BuiltinResult parse_integer(const BuiltinCall& c) {
   const auto& text = c.values[c.args[0]];
   if (text.kind != ValueKind::kString) return c.wrong(0, "a string");
+  // Blanks around the digits do not count; other spellings of numbers do not belong to it.
+  constexpr std::string_view kBlanks = " \t\n\r\f";
+  std::string_view digits = text.text;
+  digits.remove_prefix(std::min(digits.find_first_not_of(kBlanks), digits.size()));
+  digits = digits.substr(0, digits.find_last_not_of(kBlanks) + 1);
+  const auto first = digits.substr(digits.starts_with('-') || digits.starts_with('+') ? 1 : 0);
+  const bool whole = !first.empty() && first.find_first_not_of("0123456789") == first.npos;
   Number number;
-  const bool reads = Number::parse(text.text, number) == Number::Parse::kNumber;
-  if (!reads || !number.is_integer() || number.is_float()) {
+  if (!whole || Number::parse(digits, number) != Number::Parse::kNumber || !number.is_integer()) {
     return BuiltinFailure{BuiltinError::kRaise, "simple-error"};
   }
   return c.values.number(number);

@@ -49,7 +49,7 @@ constexpr Part kParts[] = {
 constexpr std::string_view kComputing[] = {"+",  "-",  "*",   "/",   "min",  "max", "abs",
                                            "1+", "1-", "sin", "cos", "sqrt", "atan"};
 constexpr std::string_view kAsking[] = {
-    "=",     "/=",     "<",  ">",       "<=",    ">=",    "eq",     "eql",
+    "=",     "/=",     "<",  ">",       "<=",    ">=",    "eq",     "eql",          "%same",
     "equal", "equalp", "q=", "numberp", "zerop", "plusp", "minusp", "poses-equal-p"};
 
 template <std::size_t kSize>

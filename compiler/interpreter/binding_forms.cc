@@ -81,9 +81,16 @@ void set_cell(FormCompiler& c, DatumId form, DatumId place, DatumId value) {
   }
   const auto accessor = c.defined.accessors.find(c.data.key(items[0]));
   const bool slot = accessor != c.defined.accessors.end();
-  if (slot) c.code.constant(c.values.symbol(accessor->second), form);
+  // The type and the slot, as `type slot`.
+  const auto names = slot ? accessor->second : std::string();
+  const auto border = names.find(' ');
+  if (slot) c.code.constant(c.values.symbol(names.substr(border + 1)), form);
   c.compile(value);
-  if (slot || head == "slot-value") return c.code.builtin("%set-slot", 3, form);
+  if (slot) {
+    c.code.constant(c.values.symbol(names.substr(0, border)), form);
+    return c.code.builtin("%set-slot", 4, form);
+  }
+  if (head == "slot-value") return c.code.builtin("%set-slot", 3, form);
   if (table) return c.code.builtin("%set-hash", 3, form);
   if (head == "value") return c.code.builtin("%set-value", 2, form);
   c.code.builtin("%set-aref", static_cast<std::uint32_t>(items.size()), form);

@@ -239,7 +239,7 @@ void form_or(FormCompiler& c, DatumId form, FormItems items) {
 void case_clause_test(FormCompiler& c, DatumId key, std::uint32_t place, DatumId source) {
   c.code.load(place, source);
   c.code.constant(c.datum_value(key), key);
-  c.code.builtin("eql", 2, source);
+  c.code.builtin("%same", 2, source);  // `eql` of a fluent is a fluent
 }
 
 void form_case(FormCompiler& c, DatumId form, FormItems items) {
@@ -264,6 +264,9 @@ void form_case(FormCompiler& c, DatumId form, FormItems items) {
     const auto keys = list ? c.data.children(parts[0]) : single;
     std::vector<std::size_t> to_body;
     for (const auto key : any ? FormItems() : keys) {
+      if (c.data.is_string(key) || !c.data.children(key).empty()) {
+        c.code.code().gaps.push_back({"a string or list as a key", key, GapKind::kMeaning});
+      }
       case_clause_test(c, key, place, clause);
       const auto to_next = c.code.jump(PlanOp::kJumpIfNil, key);
       to_body.push_back(c.code.jump(PlanOp::kJump, key));

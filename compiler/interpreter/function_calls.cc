@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -289,6 +290,59 @@ void emit_call(FormCompiler& c, const Callee& callee, std::uint32_t count, Datum
   enter_function(c, callee, std::max(count, static_cast<std::uint32_t>(parameters.size())), source);
 }
 
+namespace {
+
+/// Functions of Lisp that may change the list that they are given: ours leave it as it was. A list
+/// that a call has just made is seen by nobody else.
+void note_changed_list(FormCompiler& c, DatumId form, std::string_view name, FormItems arguments) {
+  struct Changing {
+    std::string_view name;
+    std::size_t list = 0;  // which argument
+  };
+  static constexpr Changing kChanging[] = {
+      {"sort"},      {"stable-sort"},  {"nreverse"},         {"nconc"},
+      {"delete", 1}, {"delete-if", 1}, {"delete-if-not", 1}, {"delete-duplicates"},
+  };
+  static constexpr std::string_view kFresh[] = {"list",   "copy-list", "mapcar",    "remove",
+                                                "loop",   "reverse",   "remove-if", "remove-if-not",
+                                                "mapcan", "subseq"};
+  const auto* known = std::find_if(std::begin(kChanging), std::end(kChanging),
+                                   [&](const Changing& one) { return one.name == name; });
+  if (known == std::end(kChanging) || arguments.size() <= known->list || c.data.in_library(form)) {
+    return;
+  }
+  const auto head = c.data.head(arguments[known->list]).value_or("");
+  if (std::find(std::begin(kFresh), std::end(kFresh), head) != std::end(kFresh)) return;
+  c.code.code().gaps.push_back(
+      {fmt::format("what `{}` leaves of its list", name), form, GapKind::kMeaning});
+}
+
+/// `eql` tells strings and lists apart that are written alike; ours does not.
+void note_structural_key(FormCompiler& c, DatumId form, std::string_view name,
+                         FormItems arguments) {
+  static constexpr std::string_view kSearching[] = {"eq",     "eql",      "member", "assoc",
+                                                    "find",   "position", "count",  "remove",
+                                                    "delete", "rassoc",   "adjoin"};
+  const bool searches =
+      std::find(std::begin(kSearching), std::end(kSearching), name) != std::end(kSearching);
+  if (!searches || arguments.empty() || c.data.in_library(form)) return;
+  const auto is_test = [&](DatumId datum) {
+    return c.data.is_keyword(datum) && c.data.name(datum).starts_with("test");
+  };
+  if (std::any_of(arguments.begin(), arguments.end(), is_test)) return;
+  const auto is_structure = [&](DatumId datum) {
+    return c.data.is_string(datum) ||
+           (c.data.head(datum) == "quote" && !c.data.children(c.data.children(datum)[1]).empty());
+  };
+  const auto compared =
+      arguments.subspan(0, std::min<std::size_t>(arguments.size(), name.starts_with("eq") ? 2 : 1));
+  if (std::any_of(compared.begin(), compared.end(), is_structure)) {
+    c.code.code().gaps.push_back({"a string or list as a key", form, GapKind::kMeaning});
+  }
+}
+
+}  // namespace
+
 void compile_call(FormCompiler& c, DatumId form, std::string_view name, const Callee& callee,
                   FormItems arguments) {
   // Without keywords the built-in of that name does the same.
@@ -298,6 +352,10 @@ void compile_call(FormCompiler& c, DatumId form, std::string_view name, const Ca
     Callee builtin;
     builtin.builtin = known;
     return compile_call(c, form, name, builtin, arguments);
+  }
+  if (ours || callee.builtin) {
+    note_changed_list(c, form, name, arguments);
+    note_structural_key(c, form, name, arguments);
   }
   if (callee.function != nullptr) {
     if (callee.function->top_level && c.in_function) {

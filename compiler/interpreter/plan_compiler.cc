@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -12,8 +11,10 @@
 
 #include "compiler/base/codes/plans.h"
 #include "compiler/base/suggest.h"
+#include "compiler/interpreter/designator_use.h"
 #include "compiler/interpreter/function_calls.h"
 #include "compiler/interpreter/lisp_macros.h"
+#include "compiler/interpreter/plan_races.h"
 #include "compiler/interpreter/plan_reach.h"
 #include "compiler/interpreter/plan_structures.h"
 #include "compiler/lisp/lisp_library.h"
@@ -62,7 +63,7 @@ class PlanCompiler {
     }
     if (!check_entry_call()) return sink_.already_reported();
     for (const auto form : text_.forms) flatten(form);
-    note_designator_use();
+    named_ = note_designator_use(text_, c_.code.code());
     find_reached(entry);
     collect_definitions();
     add_library();
@@ -73,11 +74,19 @@ class PlanCompiler {
     compile_functions();
     if (!missing_) compile_main(entry);
     if (c_.failed()) return sink_.already_reported();
+    note_races(c_.code.code(), runs_any_function());
     c_.code.code().function_names.insert(text_.keys.begin(), text_.keys.end());
     return std::move(c_.code.code());
   }
 
  private:
+  /// May a perform or a goal run a function that its form does not name?
+  bool runs_any_function() const {
+    const auto runs = [](const auto& entry) { return entry.plan.has_value(); };
+    return named_.contains("def-fact-group") ||
+           std::any_of(binding_.entries.begin(), binding_.entries.end(), runs);
+  }
+
   /// The user gives one call as the plan's beginning.
   bool check_entry_call() {
     if (!entry_file_) return true;
@@ -93,31 +102,6 @@ class PlanCompiler {
                       written.size() > 1 ? "the entry is one call, and this is another one"
                                          : "the entry is empty: give a function or a call of it");
     return false;
-  }
-
-  /// Which names the plan has, whether it tells designators apart, and whether it asks what they
-  /// say.
-  void note_designator_use() {
-    static constexpr std::string_view kEquate[] = {"equate", "desig-equal"};
-    static constexpr std::string_view kDescribe[] = {
-        "desig-prop-value", "desig-prop-values", "properties",     "description",
-        "copy-designator",  "property",          "def-fact-group", "extend-designator-properties"};
-    const auto is_one = [](const auto& names, std::string_view name) {
-      return std::find(std::begin(names), std::end(names), name) != std::end(names);
-    };
-    std::vector<DatumId> open(text_.forms.begin(), text_.forms.end());
-    while (!open.empty()) {
-      const auto datum = open.back();
-      open.pop_back();
-      const auto items = c_.data.children(datum);
-      if (c_.data.head(datum) == "define-condition") continue;
-      open.insert(open.end(), items.begin(), items.end());
-      if (!c_.data.is_symbol(datum)) continue;
-      named_.insert(c_.data.name(datum));
-      auto& code = c_.code.code();
-      code.identities = code.identities || is_one(kEquate, c_.data.name(datum));
-      code.describes = code.describes || code.identities || is_one(kDescribe, c_.data.name(datum));
-    }
   }
 
   /// Marks everything that the run can reach: from the entry, else from the forms at top level,
@@ -143,6 +127,9 @@ class PlanCompiler {
         read_structure(form);
       } else if (head == "defmethod" && items.size() > 1 && c_.data.is_symbol(items[1])) {
         methods_[c_.data.key(items[1])].push_back(form);
+      } else if (head == "defgeneric" && items.size() > 1 && c_.data.is_symbol(items[1])) {
+        const auto key = c_.data.key(items[1]);
+        for (const auto method : methods_of_generic(c_.data, form)) methods_[key].push_back(method);
       } else if (!is_housekeeping(head)) {
         others.push_back(form);
       }
@@ -197,18 +184,28 @@ class PlanCompiler {
     for (const auto function : structure.functions) {
       const auto items = c_.data.children(function);
       const auto name = c_.data.name(items[1]);
-      if (!c_.defined.functions.contains(name)) add_function(function, name, items);
+      if (!c_.defined.functions.contains(name)) {
+        add_function(function, name, items);
+      } else if (reach_.contains(name)) {
+        c_.unsupported(form, fmt::format("`{}` is defined twice", name));
+      }
     }
     for (const auto& [name, slot] : structure.accessors) c_.defined.accessors.emplace(name, slot);
   }
 
   /// All methods of a name are one function, of the first one's place.
   void define_method(DatumId form, const std::string& name) {
-    if (!reach_.contains(name) || c_.defined.functions.contains(name)) return;
+    if (const auto type = type_it_makes(c_.data, form); type && reach_.contains(*type)) {
+      return c_.unsupported(form, "a method of what makes things");
+    }
+    if (!reach_.contains(name) || !made_generics_.insert(name).second) return;
+    if (defined_.contains(name)) return;  // a `defun` stands for it
+    if (c_.defined.functions.contains(name)) return c_.unsupported(form, "it is defined twice");
     if (const auto generic = generics_.find(name); generic != generics_.end()) {
       return add_function(generic->second, name, c_.data.children(generic->second));
     }
-    if (structure_errors_.contains(form)) c_.unsupported(form, structure_errors_.at(form).text);
+    const auto& error = structure_errors_.at(methods_.at(name).front());
+    c_.unsupported(error.at, error.text);
   }
 
   bool define_name(DatumId form, DatumId name) {
@@ -332,7 +329,8 @@ class PlanCompiler {
       define_global(form, items);
     } else if (defines_structure(head)) {
       define_structure(form);
-    } else if (head == "defmethod" && named) {
+    } else if (named && (head == "defmethod" ||
+                         (head == "defgeneric" && methods_.contains(c_.data.key(items[1]))))) {
       define_method(form, c_.data.key(items[1]));
     } else {
       return is_housekeeping(head) || head == "define-condition";
@@ -483,6 +481,7 @@ class PlanCompiler {
   std::vector<PlanStructure> structures_;
   std::map<std::string, std::vector<DatumId>, std::less<>> methods_;  // by name
   std::map<std::string, DatumId, std::less<>> generics_;  // the function of all methods of a name
+  std::set<std::string, std::less<>> made_generics_;
   std::map<DatumId, std::size_t> structure_at_;
   std::map<DatumId, StructureError> structure_errors_;
   std::set<std::string, std::less<>> named_;  // all names, but those in definitions of conditions

@@ -55,18 +55,25 @@ void drop_dead_cells(PlanState& state, std::span<const ValueId> more, const Valu
   if (heap.cells.empty() || state.links.floor > 1) return;
   auto cells = std::exchange(heap.cells, {});
   std::set<std::uint32_t> alive;
+  std::vector<std::uint32_t> open;
   const auto note = [&](ValueId id) {
-    const auto& in_it = values[id].identities;
-    const auto before = alive.size();
-    alive.insert(in_it.begin(), in_it.end());
-    return alive.size() > before;
+    for (const auto identity : values[id].identities) {
+      if (alive.insert(identity).second) open.push_back(identity);
+    }
   };
   for_each_value(state, note);
   for (const auto value : more) note(value);
   const auto lives = [&](std::uint32_t cell) { return cell <= heap.kept || alive.contains(cell); };
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (const auto& [cell, content] : cells) changed = (lives(cell) && note(content)) || changed;
+  for (const auto& [cell, content] : cells) {
+    if (cell <= heap.kept) note(content);
+  }
+  while (!open.empty()) {
+    const auto next = open.back();
+    open.pop_back();
+    const auto found = std::lower_bound(
+        cells.begin(), cells.end(), next,
+        [](const auto& cell, std::uint32_t number) { return cell.first < number; });
+    if (found != cells.end() && found->first == next) note(found->second);
   }
   std::erase_if(cells, [&](const auto& cell) { return !lives(cell.first); });
   heap.cells = std::move(cells);

@@ -46,18 +46,29 @@ class StructureReader {
                                     [&](const PlanStructure& one) { return one.name == parent; });
     if (found == known_.end()) return false;
     out_.types.insert(out_.types.end(), found->types.begin(), found->types.end());
-    for (const auto& slot : found->slots) add_slot(slot);
+    out_.slots.insert(out_.slots.end(), found->slots.begin(), found->slots.end());
     return true;
   }
 
-  void add_slot(PlanStructure::Slot slot) {
+  PlanStructure::Slot* find_slot(std::string_view name) {
     const auto same = std::find_if(out_.slots.begin(), out_.slots.end(),
-                                   [&](const auto& other) { return other.name == slot.name; });
-    if (same == out_.slots.end()) {
+                                   [&](const auto& other) { return other.name == name; });
+    return same == out_.slots.end() ? nullptr : &*same;
+  }
+
+  /// A slot of a class that an inherited one already is keeps what it does not say itself.
+  std::optional<StructureError> add_class_slot(PlanStructure::Slot slot, DatumId at) {
+    auto* same = find_slot(slot.name);
+    if (same == nullptr) {
       out_.slots.push_back(std::move(slot));
-    } else {
-      *same = std::move(slot);
+      return std::nullopt;
     }
+    if (!same->keyword.empty() && !slot.keyword.empty() && slot.keyword != same->keyword) {
+      return wrong(at, "a slot with two initargs");
+    }
+    if (slot.initial) same->initial = slot.initial;
+    if (!slot.keyword.empty()) same->keyword = slot.keyword;
+    return std::nullopt;
   }
 
   /// (defstruct name or (name option...) [text] slot or (slot default)...)
@@ -78,6 +89,9 @@ class StructureReader {
       const std::string name(parts.size() == 2 && !data_.is_nil(parts[1]) ? data_.name(parts[1])
                                                                           : "");
       if (option == "include" && !include(name)) return wrong(head[i], "no structure above it");
+      if (option == "type" || option == "named" || option == "initial-offset") {
+        return wrong(head[i], fmt::format("the option `{}`", option));
+      }
       if (option == "conc-name") prefix = name;
       if (option == "constructor" && parts.size() == 2) maker = name;
       if (option == "predicate" && parts.size() == 2) test = name;
@@ -88,9 +102,10 @@ class StructureReader {
       const auto parts = data_.is_list(items[i]) ? children(items[i]) : std::vector{items[i]};
       if (parts.empty() || !data_.is_symbol(parts[0])) return wrong(items[i], "a slot is a name");
       const std::string name(data_.name(parts[0]));
-      add_slot({name, parts.size() > 1 ? std::optional(parts[1]) : std::nullopt, name});
+      if (find_slot(name) != nullptr) return wrong(items[i], "a slot that is there already");
+      out_.slots.push_back({name, parts.size() > 1 ? std::optional(parts[1]) : std::nullopt, name});
     }
-    if (!maker.empty()) make_maker(maker);
+    if (!maker.empty()) make_maker(maker, symbol("nil"));
     for (const auto& slot : out_.slots) make_accessor(prefix + slot.name, slot.name, true);
     if (!test.empty()) make_test(test);
     if (!copier.empty()) {
@@ -107,29 +122,46 @@ class StructureReader {
     if (!shaped) return wrong(form_, "expected a name, parents and slots");
     out_.name = data_.name(items[1]);
     out_.types = {out_.name};
+    for (std::size_t i = 4; i < items.size(); ++i) {
+      const auto parts = children(items[i]);
+      const auto option = parts.empty() ? std::string() : std::string(data_.name(parts[0]));
+      if (option != "documentation") return wrong(items[i], fmt::format("the option `{}`", option));
+    }
+    int parents = 0;
     for (const auto parent : children(items[2])) {
       const bool of_lisp =
           data_.is_symbol(parent, "standard-object") || data_.is_symbol(parent, "t");
       if (!data_.is_symbol(parent) || (!of_lisp && !include(data_.name(parent)))) {
         return wrong(parent, "no class above it");
       }
+      if (!of_lisp && ++parents > 1) return wrong(parent, "a second parent");
     }
     for (const auto written : children(items[3])) {
       const auto parts = data_.is_list(written) ? children(written) : std::vector{written};
       if (parts.empty() || !data_.is_symbol(parts[0])) return wrong(written, "a slot is a name");
       PlanStructure::Slot slot{std::string(data_.name(parts[0])), std::nullopt, {}};
       for (std::size_t i = 1; i + 1 < parts.size(); i += 2) {
-        const auto option = data_.name(parts[i]);
+        const std::string option(data_.name(parts[i]));
+        if (!takes_option(option, parts[i + 1]) || (option == "initarg" && !slot.keyword.empty())) {
+          return wrong(written, fmt::format("`{}` of a slot", option));
+        }
         if (option == "initarg") slot.keyword = data_.name(parts[i + 1]);
         if (option == "initform") slot.initial = parts[i + 1];
         if ((option == "accessor" || option == "reader") && data_.is_symbol(parts[i + 1])) {
           make_accessor(std::string(data_.name(parts[i + 1])), slot.name, option == "accessor");
         }
       }
-      add_slot(std::move(slot));
+      if (auto error = add_class_slot(std::move(slot), written)) return error;
     }
-    make_maker("%make-" + out_.name);
+    make_maker("%make-" + out_.name, quoted(symbol("%unset")));
     return std::nullopt;
+  }
+
+  bool takes_option(std::string_view option, DatumId value) const {
+    static constexpr std::string_view kKnown[] = {"initarg", "initform", "accessor",
+                                                  "reader",  "type",     "documentation"};
+    return std::find(std::begin(kKnown), std::end(kKnown), option) != std::end(kKnown) ||
+           (option == "allocation" && data_.name(value) == "instance");
   }
 
   void define(const std::string& name, std::vector<DatumId> parameters, DatumId body) {
@@ -138,8 +170,9 @@ class StructureReader {
 
   void make_accessor(const std::string& name, const std::string& slot, bool sets) {
     define(name, {symbol("object")},
-           list({symbol("slot-value"), symbol("object"), quoted(symbol(slot))}));
-    if (sets) out_.accessors.emplace_back(name, slot);
+           list({symbol("%typed-slot"), symbol("object"), quoted(symbol(slot)),
+                 quoted(symbol(out_.name))}));
+    if (sets) out_.accessors.emplace_back(name, out_.name + ' ' + slot);
   }
 
   void make_test(const std::string& name) {
@@ -147,12 +180,13 @@ class StructureReader {
            list({symbol("%structure-p"), symbol("object"), quoted(symbol(out_.name))}));
   }
 
-  void make_maker(const std::string& name) {
+  /// `nothing` stands in slots for which nothing is said.
+  void make_maker(const std::string& name, DatumId nothing) {
     std::vector<DatumId> types, given, own;
     for (const auto& type : out_.types) types.push_back(symbol(type));
     std::vector<DatumId> body = {symbol("%make-structure"), quoted(list(types))};
     for (const auto& slot : out_.slots) {
-      const auto initial = slot.initial.value_or(symbol("nil"));
+      const auto initial = slot.initial.value_or(nothing);
       if (slot.keyword.empty()) {
         own.push_back(list({symbol(slot.name), initial}));
       } else {
@@ -198,7 +232,10 @@ class MethodReader {
       if (method.required.size() != first.required.size()) {
         return StructureError{form, "its methods take different numbers of arguments"};
       }
-      methods.push_back(std::move(method));
+      if (written(method.others) != written(first.others)) {
+        return StructureError{form, "its methods take different keywords"};
+      }
+      if (auto error = add(std::move(method), methods)) return error;
     }
     const auto place = methods.front().form;
     std::stable_sort(methods.begin(), methods.end(),
@@ -258,6 +295,41 @@ class MethodReader {
     return std::nullopt;
   }
 
+  std::string written(const std::vector<DatumId>& items) const {
+    std::string out;
+    for (const auto item : items) out += print_datum(data_, item) + ' ';
+    return out;
+  }
+
+  std::string types_of(const Method& method) const {
+    std::string out;
+    for (const auto& [name, type] : method.required) {
+      out += (type ? print_datum(data_, *type) : "t") + ' ';
+    }
+    return out;
+  }
+
+  /// The last of several methods for the same types is left. Types of which we do not know which is
+  /// the more special one are refused.
+  std::optional<StructureError> add(Method method, std::vector<Method>& methods) const {
+    for (auto& other : methods) {
+      if (types_of(other) == types_of(method)) {
+        other = std::move(method);
+        return std::nullopt;
+      }
+      for (std::size_t i = 0; i < method.required.size(); ++i) {
+        const auto& type = method.required[i].second;
+        const auto& others = other.required[i].second;
+        const bool unknown = method.rank[i] == kUnknown && other.rank[i] == kUnknown;
+        if (unknown && print_datum(data_, *type) != print_datum(data_, *others)) {
+          return StructureError{*type, "which type of its methods comes first is not known"};
+        }
+      }
+    }
+    methods.push_back(std::move(method));
+    return std::nullopt;
+  }
+
   /// The greater the more special; types that exclude each other may have any order.
   int rank_of(DatumId type) const {
     constexpr int kEql = 10'000, kStructure = 1'000;
@@ -270,7 +342,7 @@ class MethodReader {
       if (one.name == name) return kStructure + static_cast<int>(one.types.size());
     }
     const auto* found = std::find(std::begin(kTypes), std::end(kTypes), name);
-    return static_cast<int>(found - std::begin(kTypes));
+    return found == std::end(kTypes) ? kUnknown : static_cast<int>(found - std::begin(kTypes));
   }
 
   /// ((and (typep argument 'type)...) (let ((name argument)...) form...))
@@ -296,11 +368,43 @@ class MethodReader {
     return list(type, parts);
   }
 
+  static constexpr int kUnknown = 100;  // failure classes, `string` and the like
   LispData& data_;
   const std::vector<PlanStructure>& known_;
 };
 
 }  // namespace
+
+std::vector<DatumId> methods_of_generic(LispData& data, DatumId form) {
+  const std::vector<DatumId> items(data.children(form).begin(), data.children(form).end());
+  std::vector<DatumId> out;
+  for (std::size_t i = 2; i < items.size(); ++i) {
+    const std::vector<DatumId> parts(data.children(items[i]).begin(),
+                                     data.children(items[i]).end());
+    if (parts.empty() || !data.is_keyword(parts[0]) || data.name(parts[0]) != "method") continue;
+    std::vector<DatumId> method = {
+        data.add_named(DatumKind::kSymbol, "defmethod", "", data.source(items[i])), items[1]};
+    method.insert(method.end(), parts.begin() + 1, parts.end());
+    out.push_back(data.add_list(method, data.source(items[i])));
+  }
+  return out;
+}
+
+std::optional<std::string> type_it_makes(const LispData& data, DatumId form) {
+  static constexpr std::string_view kMaking[] = {"initialize-instance", "shared-initialize",
+                                                 "reinitialize-instance", "make-instance"};
+  const auto items = data.children(form);
+  const auto& name = data.name(items[1]);
+  if (std::find(std::begin(kMaking), std::end(kMaking), name) == std::end(kMaking)) {
+    return std::nullopt;
+  }
+  for (const auto item : items.subspan(2)) {
+    if (!data.is_list(item)) continue;
+    const auto first = data.children(data.children(item).front());
+    return first.size() == 2 ? data.name(first[1]) : std::string("make-instance");
+  }
+  return std::nullopt;
+}
 
 std::optional<StructureError> read_methods(LispData& data, const std::vector<DatumId>& methods,
                                            const std::vector<PlanStructure>& known, DatumId& out) {

@@ -20,7 +20,8 @@ struct PlanStructure {
   };
   std::vector<Slot> slots;         // inherited ones first
   std::vector<DatumId> functions;  // (defun name parameters form...): maker, accessors, tests
-  std::vector<std::pair<std::string, std::string>> accessors;  // with the slot that each sets
+  std::vector<std::pair<std::string, std::string>>
+      accessors;  // with the `type slot` that each sets
 };
 
 /// Reads a `defstruct` or `defclass`; `known` are those above it. The functions are added to the
@@ -32,6 +33,12 @@ struct StructureError {
 std::optional<StructureError> read_structure(LispData& data, DatumId form,
                                              const std::vector<PlanStructure>& known,
                                              PlanStructure& out);
+
+/// Those that a `defgeneric` writes out, each as a `defmethod`.
+std::vector<DatumId> methods_of_generic(LispData& data, DatumId form);
+
+/// The type whose making a `defmethod` of `initialize-instance` or its like changes; else none.
+std::optional<std::string> type_it_makes(const LispData& data, DatumId form);
 
 /// Reads the methods of one generic function, `(defmethod name (parameter or (parameter type)...)
 /// form...)`, as one function: the first method whose types fit, the most special ones first. A

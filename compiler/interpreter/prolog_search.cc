@@ -337,10 +337,16 @@ Step ProofSearch::collected(std::uint32_t which, std::uint32_t next) {
 Step ProofSearch::call(const std::string& function, const Arguments& arguments, DatumId at,
                        ValueId& out) {
   std::vector<ValueId> given;
+  std::optional<PrologTermId> free;
   for (const auto argument : arguments) {
     auto value = terms.value(argument);
-    // A free variable is its own name to a function, as in CRAM.
-    if (!value && terms.is_variable(argument)) value = terms.name_of_variables();
+    // A free variable is a name to a function, as in CRAM; two would have one name.
+    if (!value && terms.is_variable(argument)) {
+      const auto variable = terms.walk(argument);
+      if (free && *free != variable) return wrong(at, function, "two arguments are free variables");
+      free = variable;
+      value = values.symbol("?_");
+    }
     if (!value) return wrong(at, function, "an argument is not bound to anything");
     given.push_back(*value);
   }

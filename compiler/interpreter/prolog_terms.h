@@ -52,8 +52,6 @@ class TermStore {
   void undo(std::size_t mark);
   /// The whole term as a value; none if a variable in it is free.
   std::optional<ValueId> value(PrologTermId term);
-  /// The symbol that stands for a free variable where functions look at it.
-  ValueId name_of_variables() { return values_.symbol("?_"); }
   /// A copy with its own variables in the place of the free ones.
   PrologTermId copy(PrologTermId term);
   /// More work than any rule needs: a term that doubles with each step holds few nodes, but walking

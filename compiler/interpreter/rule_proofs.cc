@@ -177,12 +177,11 @@ ProofWorld::Computed RuleProofs::run(std::uint32_t unit, const std::vector<Value
   auto state = machine_.computation(unit, arguments, links_);
   for (;;) {
     const auto stop = machine_.run(state);
-    if (std::holds_alternative<StopDone>(stop)) {
-      links_.chains = state.links.chains;
-      links_.heap = state.links.heap;
-      links_.next = std::max(links_.next, state.links.next);
-      return Value{state.stack.back()};
-    }
+    // Its changes stay, however it ends.
+    links_.chains = state.links.chains;
+    links_.heap = state.links.heap;
+    links_.next = std::max(links_.next, state.links.next);
+    if (std::holds_alternative<StopDone>(stop)) return Value{state.stack.back()};
     if (const auto* question = std::get_if<StopQuestion>(&stop)) {
       auto answer = truth_of(*question, answers);
       if (!std::holds_alternative<Value>(answer)) return answer;
@@ -194,6 +193,9 @@ ProofWorld::Computed RuleProofs::run(std::uint32_t unit, const std::vector<Value
       if (auto* asked = std::get_if<ProofQuestion>(&solved)) return std::move(*asked);
       if (const auto* failed = std::get_if<ProofFailed>(&solved)) return *failed;
       if (std::holds_alternative<ProofError>(solved)) return ProofError{};
+      state.links.chains = links_.chains;
+      state.links.heap = links_.heap;
+      state.links.next = links_.next;
       state.stack.push_back(std::get<ProofValue>(solved).value);
       continue;
     }

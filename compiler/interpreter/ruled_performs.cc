@@ -6,6 +6,16 @@
 #include "compiler/interpreter/explorer.h"
 
 namespace parallax::compiler {
+namespace {
+
+/// What functions that the rules call have made and changed stays so, also where the proof fails.
+void take_changes(DesignatorLinks& links, const DesignatorLinks& proved) {
+  links.chains = proved.chains;
+  links.heap = proved.heap;
+  links.next = proved.next;
+}
+
+}  // namespace
 
 /// Is the action missing in the table, so that the rules define its meaning?
 bool Explorer::is_ruled(const StopPerform& perform) const {
@@ -67,14 +77,14 @@ Explorer::Ruled Explorer::ground(Job& job, const StopPerform& perform) {
   }
   job.answers.clear();
   if (std::holds_alternative<ProofError>(result)) return {};
+  take_changes(job.state.links, rules_.links());
   if (const auto* failed = std::get_if<ProofFailed>(&result)) {
     return {true, {}, machine_.raise(job.state, failed->failure)};
   }
   if (const auto* none = std::get_if<NoPlanCall>(&result)) {
     return nothing_fits(job, perform, none->fits);
   }
-  auto& call = std::get<PlanCall>(result);
-  job.state.links.chains = std::move(call.links.chains);
+  const auto& call = std::get<PlanCall>(result);
   return {true, {}, machine_.enter(job.state, call.unit, call.arguments, perform.form)};
 }
 
@@ -92,12 +102,11 @@ Explorer::Ruled Explorer::prove(Job& job, const StopProof& proof) {
   }
   job.answers.clear();
   if (std::holds_alternative<ProofError>(result)) return {};
+  take_changes(job.state.links, rules_.links());
   if (const auto* failed = std::get_if<ProofFailed>(&result)) {
     return {true, {}, machine_.raise(job.state, failed->failure)};
   }
-  auto& solved = std::get<ProofValue>(result);
-  job.state.links.chains = std::move(solved.links.chains);
-  job.state.stack.push_back(solved.value);
+  job.state.stack.push_back(std::get<ProofValue>(result).value);
   return {true, {}, {}};
 }
 

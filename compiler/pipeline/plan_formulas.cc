@@ -119,8 +119,24 @@ class PlanFormulaChecker {
       sorts[location.result->index()] = sort;
     }
     for (const auto input : graph_.inputs) {
-      sorts[input.index()] = sort_of_input(input);
-      if (!sorts[input.index()]) return refuse_input(graph_.values[input].name);
+      const auto& name = graph_.values[input].name;
+      const auto found = sorts_of_input(input);
+      if (found.empty()) {
+        return refuse_input(
+            name,
+            "is no argument of an event or of a formula, so that nothing says which "
+            "values it has");
+      }
+      const auto& sort = sorts[input.index()] = narrowest(found);
+      if (!sort) {
+        return refuse_input(
+            name, fmt::format("stands for a `{}` and for a `{}`", model_.sorts[found[0]].name,
+                              model_.sorts[found[1]].name));
+      }
+      if (!has_values(*sort)) {
+        return refuse_input(name, fmt::format("is a `{}`, of which the model names none",
+                                              model_.sorts[*sort].name));
+      }
     }
     for (const auto& sort : sorts) {
       PARALLAX_REQUIRE(sort.has_value(), "every register is bound by some location");
@@ -129,28 +145,55 @@ class PlanFormulaChecker {
     return true;
   }
 
-  /// That of the first argument place of an event or a formula at which it stands.
-  std::optional<SortId> sort_of_input(ModelValueId input) const {
-    const auto is_meant = [&](const FormulaNode& node) {
-      return node.leaf == LeafKind::kRegister && node.number == input.index();
+  /// Those of all argument places of events and formulas at which it stands, each once.
+  std::vector<SortId> sorts_of_input(ModelValueId input) const {
+    std::vector<SortId> out;
+    const auto add = [&](const FormulaTree& formula) {
+      const auto places = static_cast<std::size_t>(
+          std::count_if(formula.nodes.begin(), formula.nodes.end(),
+                        [&](const FormulaNode& node) { return is_register(node, input); }));
+      for (std::size_t place = 0; place < places; ++place) {
+        std::size_t met = 0;
+        const auto sort = sort_by_use(model_, formula, [&](const FormulaNode& node) {
+          return is_register(node, input) && met++ == place;
+        });
+        if (sort && std::find(out.begin(), out.end(), *sort) == out.end()) out.push_back(*sort);
+      }
     };
     for (const auto& location : graph_.locations) {
-      if (const auto sort = sort_by_use(model_, location.event, is_meant)) return sort;
-      if (const auto sort = sort_by_use(model_, location.success.formula, is_meant)) return sort;
+      add(location.event);
+      add(location.success.formula);
     }
     for (const auto& branch : graph_.branches) {
-      if (branch.free) continue;
-      if (const auto sort = sort_by_use(model_, branch.guard, is_meant)) return sort;
+      if (!branch.free) add(branch.guard);
+    }
+    return out;
+  }
+
+  static bool is_register(const FormulaNode& node, ModelValueId input) {
+    return node.leaf == LeafKind::kRegister && node.number == input.index();
+  }
+
+  /// The one that is part of all the others.
+  std::optional<SortId> narrowest(const std::vector<SortId>& sorts) const {
+    for (const auto sort : sorts) {
+      const bool fits = std::all_of(sorts.begin(), sorts.end(),
+                                    [&](SortId other) { return model_.is_subsort(sort, other); });
+      if (fits) return sort;
     }
     return std::nullopt;
   }
 
-  bool refuse_input(const std::string& name) {
-    sink_.error_about(
-        codes::kNoPlanEntry, "--plan-entry",
-        fmt::format("`{}` is no argument of an event or of a formula, so that nothing "
-                    "says which values it has",
-                    name));
+  bool has_values(SortId sort) const {
+    if (model_.sorts[sort].integer || model_.sorts[sort].reified) return true;
+    return std::any_of(model_.objects.begin(), model_.objects.end(), [&](const auto& object) {
+      return std::any_of(object.sorts.begin(), object.sorts.end(),
+                         [&](SortId of) { return model_.is_subsort(of, sort); });
+    });
+  }
+
+  bool refuse_input(const std::string& name, std::string_view why) {
+    sink_.error_about(codes::kNoPlanEntry, "--plan-entry", fmt::format("`{}` {}", name, why));
     failed_ = true;
     return false;
   }

@@ -92,7 +92,7 @@ ClosedTriggers closed_triggers(const ModelAst& model, const base::SourceFiles& f
   std::set<std::string> open;
   for (const auto& form : all_forms(model, files)) {
     const auto& ast = model.ast(form.place);
-    // What axioms say of effects demands no event.
+    // Effect axioms demand no event.
     if (form.kind == AxiomForm::Kind::kEffects || form.kind == AxiomForm::Kind::kLateEffects)
       continue;
     const bool trigger = form.kind == AxiomForm::Kind::kTrigger;

@@ -95,6 +95,18 @@ TEST_CASE("free variables of the entry have every value") {
   const auto unused = cli.parallax(with_things("verify", "(list ?x)", {"--property", "0=0"}));
   CHECK(unused.code == 3);
   CHECK(unused.err.find("`?x` is no argument of an event") != std::string::npos);
+  const auto refusal = [&](const std::string& entry) {
+    const auto answer = cli.parallax(with_things("verify", entry, {"--property", "0=0"}));
+    CHECK(answer.code == 3);
+    CHECK(answer.err.find("error[CPL006]") != std::string::npos);
+    return answer.err;
+  };
+  CHECK(refusal("(fetch ?x ?x)").find("`?x` stands for a `") != std::string::npos);
+  cli.write("things.e", cli.read("things.e") + "sort tray\npredicate Clean(tray)\n");
+  cli.write("things.bind", cli.read("things.bind") + "query clean (?t) ok: Clean(?t) @t\n");
+  cli.write("things.lisp", "(defun wipe (?t) (holds (list 'clean ?t)))\n");
+  CHECK(refusal("(wipe ?t)").find("`?t` is a `tray`, of which the model names none") !=
+        std::string::npos);
 }
 
 TEST_CASE("traces say how many initial states they stand for") {

@@ -14,7 +14,7 @@
 
 namespace parallax::tools {
 
-/// What stands before the facts of a world that is a model.
+/// Prefix of the facts of a world that is a model.
 inline constexpr std::string_view kWorldFact = "world: ";
 
 enum class RevisionKind : std::uint8_t {

@@ -250,7 +250,7 @@ class Rounds {
     return false;
   }
 
-  /// What was applied last is the whole model, which other events may refute.
+  /// The model that was applied last, which other events may refute.
   void end_without_loss() {
     if (!refuted_by_) return end(LoopEnd::kClean, "the run after it is clean");
     end(LoopEnd::kRefuted, "the run after it is clean, but a random sequence of events refutes " +

@@ -240,5 +240,113 @@ TEST_CASE("branches: a try-all fails when all have failed, and ends with the fir
   CHECK(in_order.events("-++") == Strings{"Go(r1)", "PickUp(left,box)", "Signal()", "DONE"});
 }
 
+/// The gaps of a plan whose branches take turns.
+Strings gaps_of(const std::string& text) {
+  const auto plan = by_turns(text);
+  CAPTURE(text);
+  REQUIRE(plan.graph.has_value());
+  Strings out;
+  for (const auto& gap : plan.graph->gaps) out.push_back(gap.text);
+  return out;
+}
+
+TEST_CASE("cells: functions that rules call may change and make things") {
+  check_values(
+      {
+          {"(progn (prolog '(lisp-fun set-it ?x)) *g*)", "2"},
+          {"(progn (prolog '(and (lisp-fun set-it ?x) (equal ?x 9))) *g*)", "2"},
+          {"(progn (prolog '(lisp-fun set-and-fail ?x)) *g*)", "3"},
+          {"(let ((v (var-value '?x (lazy-car (prolog '(lisp-fun vector x :b ?x)))))) (aref v 1))",
+           ":b"},
+          {"(let ((h (var-value '?x (lazy-car (prolog '(lisp-fun make-it ?x)))))) "
+           "(eq h (make-hash-table)))",
+           "nil"},
+          {"(progn (prolog '(lisp-fun ask-within ?x)) *g*)", "(2 4)"},
+      },
+      "(defvar *g* 1)(defun set-it () (setf *g* 2) 2)"
+      "(defun set-and-fail () (setf *g* 3) (error \"no\"))(defun make-it () (make-hash-table))"
+      "(defun ask-within () (prolog '(lisp-fun set-it ?x)) (setf *g* (list *g* 4)) 1)");
+}
+
+TEST_CASE("cells: branches that change what others use have orders that are not explored") {
+  const Strings told = {"when branches change what others use"};
+  CHECK(gaps_of("(let ((v 1)) (par (setf v 2) (when (= v 2) (go1))))") == told);
+  CHECK(gaps_of("(defvar *g* 1)(par (setf *g* 3) (setf *g* 2))(when (= *g* 2) (go1))") == told);
+  CHECK(gaps_of("(defvar *g* 1)(defun f () (setf *g* 3))(par (f) (when (= *g* 2) (go1)))") == told);
+  CHECK(gaps_of("(let ((h (make-hash-table))) (par (setf (gethash 1 h) 2) "
+                "(when (gethash 1 h) (go1))))") == told);
+  CHECK(gaps_of("(let ((v 1)) (par (setf v 2) (funcall (lambda () (when (= v 2) (go1))))))") ==
+        told);
+  // Each has its own, or only one of them uses it.
+  CHECK(gaps_of("(let ((v 1) (w 1)) (par (progn (go1) (setf v 2)) (progn (go2) (setf w 2))) v)") ==
+        Strings{});
+  CHECK(gaps_of("(defun f (x) (setf x (+ x 1)) (go1))(par (f 1) (f 2))") == Strings{});
+}
+
+TEST_CASE("cells: what changes the making of things is refused, or read") {
+  const std::string kit = "(defclass kit () ((size :initarg :size :accessor kit-size)))";
+  const auto has = [&](const std::string& text, std::string_view code) {
+    return unroll(prelude() + kit + text).has(code);
+  };
+  CHECK(
+      has("(defmethod initialize-instance :after ((k kit) &key) (setf (kit-size k) 5))"
+          "(kit-size (make-instance 'kit :size 1))",
+          "CPL013"));
+  CHECK(has("(defclass odd (kit) () (:default-initargs :size 3))(make-instance 'odd)", "CPL013"));
+  CHECK(has("(defclass b () ())(defclass odd (kit b) ())(make-instance 'odd)", "CPL013"));
+  CHECK(has("(defclass odd () ((n :allocation :class)))(make-instance 'odd)", "CPL013"));
+  CHECK(has("(defclass odd () ((n :initarg :n :initarg :m)))(make-instance 'odd)", "CPL013"));
+  CHECK(has("(defmethod kit-size ((n number)) n)(kit-size 3)", "CPL013"));
+  CHECK(has("(kit-size (make-instance 'kit))", "CPL008"));  // nothing was put there
+  check_values(
+      {
+          {"(kit-size (make-instance 'big))", "7"},
+          {"(kit-size (make-instance 'big :size 1))", "1"},
+          {"(handler-case (kit-size (make-instance 'other :size 1)) (type-error () 'e))", "e"},
+          {"(handler-case (setf (kit-size (make-instance 'other :size 1)) 2) (error () 'e))", "e"},
+          {"(sized 3)", "4"},
+          {"(twice 3)", "second"},
+      },
+      kit +
+          "(defclass big (kit) ((size :initform 7)))"
+          "(defclass other () ((size :initarg :size)))"
+          "(defgeneric sized (x) (:method ((n number)) (+ n 1)))"
+          "(defmethod twice ((n number)) 'first)(defmethod twice ((n number)) 'second)");
+  CHECK(has("(defmethod f ((e plan-failure)) 1)(defmethod f ((e low-level-failure)) 2)(f 1)",
+            "CPL013"));
+  CHECK(has("(defmethod f ((n integer) &key a) a)(defmethod f ((n number) &key b) b)(f 1)",
+            "CPL013"));
+}
+
+TEST_CASE("cells: sameness, digits and what nothing was put into") {
+  check_values({
+      {"(let ((f (make-fluent :value 1))) (case f (1 'no) (t 'yes)))", "yes"},
+      {"(let ((f (make-fluent))) (if (member f (list 1 2)) 'in 'out))", "out"},
+      {"(parse-integer \" 5 \")", "5"},
+      {"(handler-case (parse-integer \"4/2\") (error () 'e))", "e"},
+      {"(handler-case (parse-integer \"5.\") (error () 'e))", "e"},
+      {"(expt 2.0 0)", "1.0"},
+      {"(length (make-array 2))", "2"},
+  });
+  const auto codes = [&](const std::string& text) { return unroll(prelude() + text).codes(); };
+  CHECK(codes("(aref (make-array 2) 0)") == Strings{"CPL008"});
+  CHECK(codes("(make-hash-table :test 'equalp)") == Strings{"CPL008"});
+  CHECK(codes("(gethash \"a\" (make-hash-table))") == Strings{"CPL008"});
+  CHECK(!codes("(iterate (for x in '(1 2)) (finding x maximizing x))").empty());
+}
+
+TEST_CASE("cells: changes that others would see in Lisp are told") {
+  CHECK(gaps_of("(let ((l (list 1 2))) (delete 1 l))") ==
+        Strings{"what `delete` leaves of its list"});
+  CHECK(gaps_of("(let ((l (list 2 1))) (sort (copy-list l) #'<))") == Strings{});
+  CHECK(gaps_of("(let ((l (list 2 1))) (sort l #'<))") ==
+        Strings{"what `sort` leaves of its list"});
+  CHECK(gaps_of("(case \"a\" (\"a\" 1))") == Strings{"a string or list as a key"});
+  CHECK(gaps_of("(member \"a\" '(\"a\"))") == Strings{"a string or list as a key"});
+  CHECK(gaps_of("(member \"a\" '(\"a\") :test #'equal)") == Strings{});
+  CHECK(gaps_of("(let ((a (vector 1 2))) (loop for x across a do (setf (aref a 1) 5)))") ==
+        Strings{"changes of an array behind a loop across it"});
+}
+
 }  // namespace
 }  // namespace parallax::compiler

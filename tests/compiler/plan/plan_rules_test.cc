@@ -376,6 +376,8 @@ TEST_CASE("rules: bad ones are located and bounded") {
   CHECK(codes("(<- (action-grounding ?d (fetch ?d)) (lisp-fun nowhere ?d ?x))") ==
         "no form or function `nowhere`");
   // A goal that cannot be computed is an error, not a goal that fails.
+  CHECK(codes("(<- (action-grounding ?d (fetch ?d)) (lisp-fun list ?a ?b ?x))") ==
+        "rule: `list`: two arguments are free variables");
   CHECK(codes("(<- (action-grounding ?d (fetch ?d)) (lisp-fun + 1 a ?x))") ==
         "`+`: argument 2 is a, not a number");
   CHECK(codes("(<- (action-grounding ?d (fetch ?d)) (lisp-fun carry 1 ?x))") ==

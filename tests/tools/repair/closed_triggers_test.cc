@@ -46,7 +46,7 @@ TEST_CASE("an event that another axiom can demand as well is not closed") {
     CAPTURE(other);
     for (const auto& symbol : closed(trigger + other).symbols) CHECK(symbol != "Boil");
   }
-  // What forbids an event, or names it in front of an effect, does not demand it.
+  // An axiom that forbids an event, or names it in front of an effect, does not demand it.
   CHECK(closed(trigger + "[time] Happens(Boil(),time) -> HoldsAt(On(),time).\n").symbols ==
         Symbols{"Boil"});
   CHECK(closed(trigger + "[time] !Happens(Boil(),time) -> Initiates(Switch(),Hot(),time).\n")

@@ -95,7 +95,7 @@ TEST_CASE("what random sequences say, of which events, and what decided the rank
   CHECK(says("The unchanged model agrees with more runs"));
   CHECK(json().at("agrees_less") == true);
 
-  // What leaves an outcome open admits either one.
+  // An open outcome admits either one.
   proposal.open = true;
   CHECK_FALSE(says("random sequence"));
   CHECK_FALSE(json().contains("sequences_right"));
