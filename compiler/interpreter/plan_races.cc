@@ -1,6 +1,7 @@
-// Variables, globals and cells that units may read and write, by their code and that of all that they
-// may call. Where a function value is called nobody can tell which: any that the plan makes counts.
-// Cells of one kind are taken for one, so an answer may name what never meets, but misses nothing.
+// Variables, globals and cells that units may read and write, by their code and that of all that
+// they may call. Where a function value is called nobody can tell which: any that the plan makes
+// counts. Cells of one kind are taken for one, so an answer may name what never meets, but misses
+// nothing.
 #include "compiler/interpreter/plan_races.h"
 
 #include <algorithm>

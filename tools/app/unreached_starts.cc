@@ -92,8 +92,7 @@ std::vector<std::string> UnreachedStarts::texts(Context& context) const {
   }
   const bool more = status != runtime::SolveStatus::kUnsatisfiable;
   return {fmt::format(
-      "{}{} {} to no trace up to the horizon and {} not simulated: {}{}",
-      more ? "at least " : "",
+      "{}{} {} to no trace up to the horizon and {} not simulated: {}{}", more ? "at least " : "",
       base::counted(static_cast<std::int64_t>(found.size()), "initial state", "initial states"),
       found.size() == 1 ? "leads" : "lead", found.size() == 1 ? "is" : "are",
       fmt::join(names, "; "), found.size() > names.size() ? "; ..." : "")};
