@@ -410,7 +410,7 @@ std::optional<std::size_t> place_of(const BuiltinCall& c, const std::vector<Valu
 }
 
 /// Is the structure of the type, or of one that includes it?
-bool has_type(const BuiltinCall& c, ValueId structure, ValueId type) {
+bool is_structure_of(const BuiltinCall& c, ValueId structure, ValueId type) {
   return c.values[structure].text.find(' ' + c.values[type].text + ' ') != std::string::npos;
 }
 
@@ -424,7 +424,7 @@ BuiltinResult structure_slot(const BuiltinCall& c) {
   if (!is_cell(c, c.args[0], kStructure)) return other;
   auto slots = *c.values.elements(content_of(c, c.args[0]));
   const auto at = place_of(c, slots);
-  if (!at || (c.args.size() > type && !has_type(c, c.args[0], c.args[type]))) return other;
+  if (!at || (c.args.size() > type && !is_structure_of(c, c.args[0], c.args[type]))) return other;
   const auto held = c.values[slots[*at]].tail;
   if (!sets && is_unset(c, held)) return c.wrong(0, "a structure with a value in that slot");
   if (!sets) return held;
@@ -441,7 +441,8 @@ BuiltinResult copy_structure(const BuiltinCall& c) {
 
 /// (%structure-p value type)
 BuiltinResult is_structure(const BuiltinCall& c) {
-  return c.values.boolean(is_cell(c, c.args[0], kStructure) && has_type(c, c.args[0], c.args[1]));
+  return c.values.boolean(is_cell(c, c.args[0], kStructure) &&
+                          is_structure_of(c, c.args[0], c.args[1]));
 }
 
 constexpr BuiltinEntry kCellTable[] = {

@@ -13,6 +13,7 @@
 #include "harness/sampling/sampler.h"
 #include "tests/harness/campaign/many_states.h"
 #include "tests/harness/campaign/two_regions.h"
+#include "tests/support/deep.h"
 
 namespace parallax::harness {
 namespace {
@@ -21,7 +22,7 @@ using test::CellFeed;
 using test::CellRates;
 
 constexpr double kLevel = 0.9, kEpsilon = 0.2;
-constexpr int kCampaigns = 2000;
+const int kCampaigns = test::is_deep() ? 2000 : 400;
 
 /// Every line of a journal is written through, which takes time on a disk.
 std::filesystem::path quick_folder() {
@@ -103,7 +104,7 @@ class Campaigns {
   std::size_t cells_;
 };
 
-/// Counts of 2,000 campaigns.
+/// Counts of kCampaigns campaigns.
 struct Claims {
   int made = 0;          // that the mean is below epsilon, which is false
   int false_bounds = 0;  // the bound beside the verdict, of those without a discrepancy
@@ -119,7 +120,7 @@ Claims count_claims(CriterionKind kind, double lost_share) {
   }
   Claims out;
   for (int i = 0; i < kCampaigns; ++i) {
-    // Twenty campaigns in each of a hundred worlds.
+    // Twenty campaigns in each world.
     const auto rates = random_rates(static_cast<std::uint64_t>(i / 20), lost_share);
     CHECK(rates.mean() == doctest::Approx(kEpsilon));
     const auto result =
