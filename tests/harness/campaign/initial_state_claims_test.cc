@@ -22,7 +22,7 @@ using test::CellFeed;
 using test::CellRates;
 
 constexpr double kLevel = 0.9, kEpsilon = 0.2;
-const int kCampaigns = test::is_deep() ? 2000 : 400;
+const int kCampaigns = parallax::test::is_deep() ? 2000 : 400;
 
 /// Every line of a journal is written through, which takes time on a disk.
 std::filesystem::path quick_folder() {
