@@ -100,7 +100,14 @@ TEST_CASE("parts of a suite from processors that calculate differently are not m
     MESSAGE("SKIPPED: this processor has no FMA that the C library could be told not to use");
     return;
   }
-  const std::vector<std::string> suite = {"suite", ".", "--fast"};
+  std::filesystem::create_directory(cli.folder() / "small");
+  cli.write("small/gun.e",
+            "range time 0 1\nfluent Alive()\nfluent Loaded()\nevent Shoot()\nHoldsAt(Alive(),0).\n"
+            "[time] HoldsAt(Loaded(),time) -> Terminates(Shoot(),Alive(),time).\n");
+  cli.write("small/suite.yaml",
+            "cases:\n  - {id: one, model: gun.e, expect: {traces: 4}}\n"
+            "  - {id: two, model: gun.e, expect: {traces: 4}}\n");
+  const std::vector<std::string> suite = {"suite", "small"};
   const auto part = [&](const std::string& shard, const std::string& out) {
     auto all = suite;
     all.insert(all.end(), {"--shard", shard, "--out", out});
