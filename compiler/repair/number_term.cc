@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstdint>
+#include <limits>
 #include <set>
 
 namespace parallax::compiler {
@@ -61,7 +63,9 @@ class OtherNumbers {
     if (node.kind == NodeKind::kNumber) {
       const auto number = read_number(ast_.name(node));
       if (!number) return;
-      add(node, std::to_string(*number + 1), 2);
+      if (*number < std::numeric_limits<std::int64_t>::max()) {
+        add(node, std::to_string(*number + 1), 2);
+      }
       if (*number > 0) add(node, std::to_string(*number - 1), 2);
       return;
     }
@@ -109,8 +113,14 @@ std::vector<std::string> numerals_of(const TypedModel& model, SortId sort) {
   for (std::uint32_t i = 0; i < model.sorts.size(); ++i) {
     if (!model.is_subsort(SortId(i), sort)) continue;
     for (const auto& range : model.sorts[SortId(i)].ranges) {
-      if (range.upper - range.lower >= kMostNumerals) return {};
-      for (auto n = range.lower; n <= range.upper; ++n) numbers.insert(n);
+      // Ranges may reach to the ends of 64 bits.
+      const auto last =
+          static_cast<std::uint64_t>(range.upper) - static_cast<std::uint64_t>(range.lower);
+      if (range.upper < range.lower) continue;
+      if (last >= static_cast<std::uint64_t>(kMostNumerals)) return {};
+      for (std::uint64_t k = 0; k <= last; ++k) {
+        numbers.insert(range.lower + static_cast<std::int64_t>(k));
+      }
     }
   }
   if (numbers.size() > static_cast<std::size_t>(kMostNumerals)) return {};
@@ -143,7 +153,10 @@ std::optional<std::int64_t> number_of(const std::string& term,
   const auto left = number_or_variable(term.substr(0, sign), values);
   const auto right = number_or_variable(term.substr(sign + 1), values);
   if (!left || !right) return std::nullopt;
-  return term[sign] == '+' ? *left + *right : *left - *right;
+  std::int64_t out = 0;
+  const bool too_large = term[sign] == '+' ? __builtin_add_overflow(*left, *right, &out)
+                                           : __builtin_sub_overflow(*left, *right, &out);
+  return too_large ? std::nullopt : std::optional(out);
 }
 
 std::optional<bool> compares(const ConditionLiteral& literal,

@@ -245,7 +245,6 @@ TEST_CASE("what cannot be compared or written is refused before it is") {
   CHECK(code({"diff", "--gate", "rules.yaml", "old.e", "fetch.lisp"}) == 2);
   CHECK(code({"diff", "--gate", "rules.yaml", "old.e", "old.e", "--stat"}) == 2);
   CHECK(code({"diff", "--gate", "absent.yaml", "old.e", "old.e"}) == 2);
-  CHECK(code({"diff", "old.e", "old.e", "--markdown", "new.md"}) == 2);
   gate.write("rates.yaml", "rates: {worse: forbidden}\n");
   for (
       const auto* bad :

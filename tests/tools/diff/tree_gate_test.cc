@@ -254,7 +254,7 @@ TEST_CASE("a file that only one side has in a plan's folder is a change") {
   const Trees trees;
   put_two_models(trees);
   trees.put("rules.yaml", "models: {axioms: forbidden, declarations: forbidden}\n");
-  trees.check(trees.gate({"a", "b"}), 0, "no file of 3 scenarios changed");
+  trees.check(trees.gate({"a", "b"}), 0, "no file of 3 scenarios and models changed");
   trees.put("b/plan/b.lisp",
             "(def-cram-function more () (perform (an action (type parking-arms))))\n");
   const auto more = trees.gate({"a", "b"});
@@ -268,7 +268,7 @@ TEST_CASE("a model that is the world belongs to the physics") {
   const Trees trees;
   put_two_models(trees);
   trees.put("rules.yaml", "models: {physics: forbidden}\n");
-  trees.check(trees.gate({"a", "b"}), 0, "no file of 3 scenarios changed");
+  trees.check(trees.gate({"a", "b"}), 0, "no file of 3 scenarios and models changed");
   trees.replace("b/unparks.e", "Terminates(", "Releases(");
   trees.check(trees.gate({"a", "b"}), 1, "in the model that is the world");
   // With evidence instead the two are run.
