@@ -57,6 +57,8 @@ TEST_CASE("the models of this repository are in the standard layout") {
   std::vector<std::string> arguments = {"fmt", "--check"};
   for (const auto* folder : {"docs", "scenarios", "tests", "tools"}) {
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      // The generator of mistakes reads a sentence from each line.
+      if (entry.path().string().find("/bench/mistakes/worlds/") != std::string::npos) continue;
       if (entry.path().extension() == ".e") arguments.push_back(entry.path().string());
     }
   }
