@@ -1,10 +1,45 @@
 #include "runtime/enumerate/closed_world.h"
 
+#include <map>
 #include <utility>
 
 #include "runtime/enumerate/demanded_events.h"
 
 namespace parallax::runtime {
+
+void require_reasons(SolverSession& session) {
+  const auto& model = session.model();
+  const auto demandable = demandable_events(model);
+  if (demandable.empty() || model.plan.empty()) return;
+  std::map<std::int32_t, std::vector<Literal>> reasons;  // by the variable of an event
+  const compiler::AtomIndex index(model);
+  for (const auto event : demandable) {
+    for (Timepoint t = 0; t < model.horizon; ++t) {
+      auto& known = reasons[model.variable(*model.events[event.index()].slot, t)];
+      for (std::uint32_t step = 0; step < model.plan.size(); ++step) {
+        if (model.plan[step].event != model.events[event.index()].name) continue;
+        if (const auto at = index.at(compiler::PlanStepId(step), t)) known.push_back(*at);
+      }
+    }
+  }
+  for (std::size_t c = 0; c < model.clauses.size(); ++c) {
+    if (model.origins[model.clause_origins[c]].kind != compiler::OriginKind::kAxiom) continue;
+    for (const auto literal : model.clauses[c]) {
+      const auto found = literal.is_positive() ? reasons.find(literal.var()) : reasons.end();
+      if (found == reasons.end()) continue;
+      // The reason is that every other literal of the clause is false.
+      const auto reason = session.new_variable();
+      for (const auto other : model.clauses[c]) {
+        if (other != literal) session.add_clause(std::vector{~reason, ~other});
+      }
+      found->second.push_back(reason);
+    }
+  }
+  for (auto& [variable, any] : reasons) {
+    any.push_back(~Literal::positive(variable));
+    session.add_clause(any);
+  }
+}
 
 ClosedWorld::ClosedWorld(const CompiledModel& model, std::unique_ptr<SatSolver> solver)
     : model_(&model), session_(model, std::move(solver)), is_demandable_(model.events.size()) {

@@ -9,6 +9,12 @@
 
 namespace parallax::runtime {
 
+/// Leaves to the session only executions in which every event that axioms can demand has a reason:
+/// the plan performs it, or an axiom would be false without it. That is necessary in a closed world
+/// and keeps the rest from being enumerated; ClosedWorld tells what is left. Does nothing to a
+/// model without a plan, in which anything may be performed. Linear in the clauses.
+void require_reasons(SolverSession& session);
+
 /// Tells traces in which events happen by themselves although nothing demands them. A model with
 /// triggers (`... -> Happens(Slam(),time)`) admits them; in the closed world only subset-minimal
 /// sets of demanded events happen beside what is performed, as in a world that is a model.

@@ -116,8 +116,10 @@ EnumeratedTraces::EnumeratedTraces(const compiler::CompiledModel& model, Context
       context_(&context),
       split_initial_(options.split_initial),
       session_(std::make_unique<runtime::SolverSession>(
-          model, runtime::make_cadical_solver(&context.stop()))),
-      enumerator_(std::make_unique<runtime::PlanEnumerator>(*session_, options)) {}
+          model, runtime::make_cadical_solver(&context.stop()))) {
+  runtime::require_reasons(*session_);
+  enumerator_ = std::make_unique<runtime::PlanEnumerator>(*session_, options);
+}
 
 EnumeratedTraces::EnumeratedTraces(const ScenarioModel& loaded, Context& context,
                                    const runtime::PlanEnumeratorOptions& options)
