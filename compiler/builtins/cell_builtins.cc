@@ -283,7 +283,8 @@ BuiltinResult make_array(const BuiltinCall& c) {
     const auto length = natural_value(c, dimension);
     if (!length || *length > kMaxPlanValues) return c.wrong(0, "a natural number");
     size *= *length;
-    if (size > kMaxPlanValues) return c.wrong(0, "so many elements as fit");
+    if (size > kMaxPlanValues)
+      return c.wrong(0, "a size of at most " + std::to_string(kMaxPlanValues));
   }
   const auto all =
       keyword_argument(c, 1, "initial-element").value_or(c.values.symbol(std::string(kUnset)));

@@ -28,7 +28,7 @@ PlanMachine::Step PlanMachine::load_global(PlanState& state, const PlanInstructi
   return StopError{};
 }
 
-/// Where nothing in this task has rebound it, the value that all tasks see is set.
+/// Sets the binding of this task if there is one, else the global value that all tasks see.
 PlanMachine::Step PlanMachine::store_special(PlanState& state, const PlanInstruction& instruction) {
   if (const auto rebound = special(state, instruction.a)) {
     state.stack[*rebound] = state.stack.back();

@@ -8,7 +8,7 @@
 namespace parallax::compiler {
 namespace {
 
-/// What functions that the rules call have made and changed stays so, also where the proof fails.
+/// Keeps what functions called by rules have made and changed, also where the proof fails.
 void take_changes(DesignatorLinks& links, const DesignatorLinks& proved) {
   links.chains = proved.chains;
   links.heap = proved.heap;

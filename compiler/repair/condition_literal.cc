@@ -81,7 +81,7 @@ void add_equation(LiteralArgument left, LiteralArgument right, bool less,
   literal.kind = ConditionLiteral::Kind::kEqual;
   literal.arguments = {std::move(left), std::move(right)};
   literal.less = less;
-  // That a number is not one beside another is no condition that anybody writes.
+  // Nobody writes `x != y + 1` as a condition.
   const bool by_term = literal.arguments.back().kind == Kind::kTerm && !less;
   if (by_term) {
     out.push_back(std::move(literal));

@@ -1,9 +1,9 @@
 // Effects on fluents with a number that an event changes: a stock, a level, a count.
 //
-// Where a step began F(a,n) and F(a,m) held before it, the new number is said by the old one: by
-// their distance, by an argument of the event, or by a declared function with that value. Objects
-// become variables. What comes out is `HoldsAt(F(a,count1),time) & count2=count1-1 ->
-// Initiates(E,F(a,count2),time)`, with the end of F(a,count1) where that differed as well.
+// If F(a,m) held before a step and F(a,n) after it, n is expressed by m: by their difference, by an
+// argument of the event, or by a declared function with that value. Objects become variables. The
+// proposed effect is `HoldsAt(F(a,count1),time) & count2=count1-1 ->
+// Initiates(E,F(a,count2),time)`, together with the end of F(a,count1) where that differed as well.
 // Cost: pairs of changes and true fluents of one symbol.
 
 #include <algorithm>
