@@ -54,7 +54,7 @@ TEST_CASE("a model with triggers is not found wrong against itself") {
 
 TEST_CASE("events without a reason are not enumerated") {
   const Kettle kettle;
-  // Ten bells ring when they are hot, which they never are: 2^40 executions, one of them closed.
+  // Ten bells ring when they are hot, which they never are: 2^30 executions, one of them closed.
   std::string bells;
   for (int i = 0; i < 10; ++i) {
     const auto n = std::to_string(i);
