@@ -170,8 +170,9 @@ struct LossCount {
 struct TraceResult {
   std::shared_ptr<const CampaignTrace> trace;
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
-  StartResult starts;       // the initial states that were simulated
-  bool is_decided = false;  // the criterion was met, whatever the verdict waits for besides
+  StartResult starts;            // the initial states that were simulated
+  bool is_decided = false;       // the criterion was met, whatever the verdict waits for besides
+  bool began_elsewhere = false;  // not where starts were drawn (start_echo.h)
   std::vector<SampledDimension> start_region;  // the continuous states that the first stands for
   std::vector<StartShare> start_shares;        // how much of their cells is drawn from
   std::string left_out;          // the part of the region that is never drawn; empty: none

@@ -307,7 +307,9 @@ class LoopCampaign {
     stream.is_decided = criterion_->decide(tally_.runs()).stop && stream.loop->unfinished == 0 &&
                         tally_.is_covered();
     const auto* found = result_.discrepancies.empty() ? nullptr : &result_.discrepancies.front();
-    const bool is_shown = stream.is_decided && stream.starts.is_covered();
+    const auto other_starts = tally_.echo().faults();
+    stream.began_elsewhere = !other_starts.empty();
+    const bool is_shown = stream.is_decided && stream.starts.is_covered() && other_starts.empty();
     stream.verdict = found != nullptr ? CampaignVerdict::kDiscrepancy
                      : is_shown       ? CampaignVerdict::kNoDiscrepancy
                                       : CampaignVerdict::kInconclusive;
@@ -317,6 +319,7 @@ class LoopCampaign {
     if (feed_.plan().performs().empty()) {
       stream.caveats.emplace_back("the plan performs nothing: initial states alone were compared");
     }
+    stream.caveats.insert(stream.caveats.end(), other_starts.begin(), other_starts.end());
     add_loop_caveats(stream);
     if (found == nullptr) {
       add_start_caveats(stream.starts, tally_.executions(), limit_.most, stream.caveats);

@@ -21,6 +21,7 @@ void LoopTally::add_start(const SampleRecord& record, const Sampler& sampler) {
 /// Counts an execution that came to a result. Is it one of those that rates are about?
 bool LoopTally::note(const SampleRecord& record, bool admitted) {
   if (cover_) cover_->note(record, admitted);
+  echo_.add(record);
   if (!record.visit) {
     if (record.retries > 0) ++stream_.retried;
     count_path(record, *stream_.loop);

@@ -8,6 +8,7 @@
 #include "harness/campaign/cover_watch.h"
 #include "harness/campaign/loop_cover.h"
 #include "harness/campaign/sample_record.h"
+#include "harness/campaign/start_echo.h"
 #include "harness/campaign/start_law.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/item_bounds.h"
@@ -46,6 +47,7 @@ class LoopTally {
   bool is_covered() const { return !cover_ || cover_->is_over(); }
   const std::optional<LoopCover>& cover() const { return cover_; }
   const LawCounter& law() const { return law_; }
+  const StartEcho& echo() const { return echo_; }
   const FixedCount& rated() const { return rated_; }
 
  private:
@@ -54,6 +56,7 @@ class LoopTally {
 
   Tally tally_;
   LawCounter law_;
+  StartEcho echo_;
   FixedCount rated_;
   std::optional<LoopCover> cover_;
   std::int64_t drawn_unfinished_ = 0;

@@ -53,6 +53,7 @@ class RareEstimator {
         visit_asked_traces(bench_, traces_, options_.trace, scenario_.name, visit, sink_);
     if (!complete) return sink_.already_reported();
     result.complete = *complete;
+    if (options_.trace == 0) result.bounds = traces_.bounds();
     return result;
   }
 
@@ -95,6 +96,14 @@ class RareEstimator {
     rate.estimate.lost += unfinished.lost;
     rate.estimate.invalid += unfinished.invalid;
     rate.contradicting.assign(scale.contradicting().begin(), scale.contradicting().end());
+    // Initial states are equally likely, and a start that is not valid is drawn again within its
+    // state. Points of the cube are drawn anew in all states together, so where some lose more
+    // starts they would count for less.
+    const bool has_answer = rate.estimate.end == RareEventEnd::kEstimated ||
+                            rate.estimate.end == RareEventEnd::kUnreached;
+    if (has_answer && rate.estimate.invalid > 0 && !rate.starts.is_single()) {
+      rate.estimate.end = RareEventEnd::kUnequal;
+    }
     return rate;
   }
 
@@ -217,6 +226,12 @@ std::string why_unanswered(const RareTraceRate& rate, const RareRatesResult& res
       return "runs were lost, for which splitting has no worst case; --method importance has one";
     case RareEventEnd::kInvalid:
       return "hardly any start is valid";
+    case RareEventEnd::kUnequal:
+      return fmt::format(
+          "{} of the drawn starts were not valid, and initial states need not lose equally many of "
+          "theirs, so this is no rate over equally likely states; count (without --method), or fix "
+          "the initial state in the model",
+          estimate.invalid);
     case RareEventEnd::kStopped:
       return "stopped before all runs were made";
   }

@@ -29,6 +29,7 @@ struct RareRatesResult {
   Comparison comparison = Comparison::kEveryStep;
   bool complete = true;  // false: stopped, or the simulator was lost too often
   std::vector<RareTraceRate> traces;
+  std::vector<std::string> bounds;  // what was left out, a sentence each
   /// Does every trace have its interval?
   bool is_answered() const;
 };

@@ -50,6 +50,7 @@ class Estimator {
     if (!complete) return sink_.already_reported();
     result.complete = *complete;
     if (!result.complete && !lost_too_often_) forget_plan(result);
+    if (options_.trace == 0) result.bounds = traces_.bounds();
     return result;
   }
 

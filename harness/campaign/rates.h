@@ -78,6 +78,7 @@ struct RatesResult {
   Comparison comparison = Comparison::kEveryStep;
   bool complete = true;  // false: stopped, or the simulator was lost too often
   std::vector<TraceRates> traces;
+  std::vector<std::string> bounds;  // what was left out, a sentence each
 
   /// Weighs the runs of a trace as evidence for or against `until_known`; of `indifference` it is
   /// the answer of the sequential test.

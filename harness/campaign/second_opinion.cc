@@ -69,8 +69,9 @@ base::Result<std::optional<std::vector<Opinion>>> ask(
   std::vector<Opinion> out;
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const auto& question = questions[i];
-    const auto record = bench.pool().wait(static_cast<std::int64_t>(i) + 1, DrawPhase::kCertify);
+    auto record = bench.pool().wait(static_cast<std::int64_t>(i) + 1, DrawPhase::kCertify);
     if (!record || bench.stopped()) return std::optional<std::vector<Opinion>>();
+    record->start_state = question.record.start_state;
     if (record->status == SampleStatus::kRefused) {
       return sink.error(codes::kSimulatorRefused, scenario.actions_source,
                         fmt::format("refused the start or an action of simulation {}.{}",
@@ -147,13 +148,13 @@ std::vector<OpinionQuestion> opinion_questions(const std::vector<SampleRow>& row
 }
 
 base::Result<std::optional<std::vector<Opinion>>> opinions_on_traces(
-    const Scenario& scenario, SimulatorBench& bench, TraceFeed& feed, const TracesByNumber& traces,
+    const Scenario& scenario, SimulatorBench& bench, TraceFeed& feed, const TracesOfRun& traces,
     std::vector<OpinionQuestion> questions, base::DiagnosticSink& sink) {
   auto calls = std::make_shared<std::map<std::int64_t, std::vector<ActionCall>>>();
   for (const auto& question : questions) {
     const auto number = question.record.trace;
     if (calls->contains(number)) continue;
-    auto made = action_calls(scenario, *traces.at(number), sink);
+    auto made = action_calls(scenario, *traces.at({number, 0}), sink);
     if (!made) return sink.already_reported();
     calls->emplace(number, *std::move(made));
   }
@@ -167,7 +168,9 @@ base::Result<std::optional<std::vector<Opinion>>> opinions_on_traces(
   const auto comparison = scenario.comparison();
   const auto judge_one =
       [&](const SampleRecord& record) -> base::Result<std::optional<OtherVerdict>> {
-    const auto& trace = *traces.at(record.trace);
+    // Predicted from the initial state that the sample begins in, which need not be the first one.
+    const auto own = traces.find({record.trace, record.start_state});
+    const auto& trace = own == traces.end() ? *traces.at({record.trace, 0}) : *own->second;
     const auto judgement = judge(*scenario.mapping, bench.fluents(), trace, record.observations);
     if (!judgement.missing.empty()) {
       return report_unseen(scenario, *judgement.missing.begin(), sink);

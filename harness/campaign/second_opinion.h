@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compiler/base/word_table.h"
@@ -63,14 +64,17 @@ std::vector<OpinionQuestion> opinion_questions(const std::vector<SampleRow>& row
                                                const std::map<SampleKey, SampleRecord>& samples,
                                                std::int64_t clean);
 
-using TracesByNumber = std::map<std::int64_t, std::shared_ptr<const CampaignTrace>>;
+/// The traces of a run by number and, behind it, by the number of the initial state that a sample
+/// begins in; 0: as it was enumerated.
+using TracesOfRun =
+    std::map<std::pair<std::int64_t, std::int64_t>, std::shared_ptr<const CampaignTrace>>;
 
 /// Simulates the starts and seeds again with the bench's simulator, which was started, and judges
 /// what comes of them as the run does. Nothing depends on the number of workers. None when stopped.
 /// Reports an action that the simulator refuses, and a variable that it does not show
 /// (kSimulatorRefused).
 base::Result<std::optional<std::vector<Opinion>>> opinions_on_traces(
-    const Scenario& scenario, SimulatorBench& bench, TraceFeed& feed, const TracesByNumber& traces,
+    const Scenario& scenario, SimulatorBench& bench, TraceFeed& feed, const TracesOfRun& traces,
     std::vector<OpinionQuestion> questions, base::DiagnosticSink& sink);
 
 /// The same of executions of a plan, which goes on by what the other simulator reports. `seed`: of

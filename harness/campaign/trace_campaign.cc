@@ -13,6 +13,7 @@
 #include "harness/campaign/run_setup.h"
 #include "harness/campaign/sample_record.h"
 #include "harness/campaign/search_phase.h"
+#include "harness/campaign/start_echo.h"
 #include "harness/campaign/start_visits.h"
 #include "harness/campaign/start_words.h"
 #include "harness/confidence/criterion.h"
@@ -183,6 +184,7 @@ class TraceCampaign {
     const bool is_lost =
         sample.verdict == SampleVerdict::kLost || sample.verdict == SampleVerdict::kLostTooOften;
     if (!is_lost && sample.record.retries > 0) ++result.retried;
+    if (!is_lost) echo_.add(sample.record);
     count_start(trial_.starts(), sample, result.starts);
     using Kept = RunRecorder::Verdict;
     context_.recorder.judge(sample.record, is_lost ? Kept::kNothing
@@ -286,7 +288,9 @@ class TraceCampaign {
     result.is_decided = end == TraceEnd::kDecided;
     trial_.starts().describe(result.starts,
                              trial_.next_sample() - (end == TraceEnd::kRanOut ? 0 : 1));
-    const bool is_covered = result.starts.is_covered();
+    const auto other_starts = echo_.faults();
+    result.began_elsewhere = !other_starts.empty();
+    const bool is_covered = result.starts.is_covered() && other_starts.empty();
     result.verdict = end == TraceEnd::kDecided && is_covered ? CampaignVerdict::kNoDiscrepancy
                      : end == TraceEnd::kDiscrepancy         ? CampaignVerdict::kDiscrepancy
                                                              : CampaignVerdict::kInconclusive;
@@ -323,6 +327,7 @@ class TraceCampaign {
     if (result.search && !result.starts.all) {
       result.caveats.push_back("the search looked at the first initial state only");
     }
+    result.caveats.insert(result.caveats.end(), other_starts.begin(), other_starts.end());
     add_own_caveats(result);
     return std::move(outcome_);
   }
@@ -403,6 +408,7 @@ class TraceCampaign {
   std::map<std::size_t, Failures> failures_;  // in clean runs, by event
   Tally tally_;
   LawCounter law_;
+  StartEcho echo_;
   CriterionSpec spec_;
   std::unique_ptr<ConfidenceCriterion> criterion_;
   RunLimit limit_;

@@ -62,6 +62,22 @@ bool has_interval(const RareEventResult& estimate, RareEventMethod method) {
          (estimate.end == RareEventEnd::kUnreached && method == RareEventMethod::kImportance);
 }
 
+/// The initial states with a discrepancy. The method chose where to begin, so counts would say
+/// nothing of rates.
+std::string seen_states(const StartResult& starts) {
+  constexpr std::size_t kMostShown = 6;
+  std::string out;
+  std::size_t failing = 0;
+  for (const auto& [number, counts] : starts.states) {
+    if (counts.discrepancies == 0) continue;
+    if (++failing <= kMostShown) out += "  a discrepancy from " + counts.text + "\n";
+  }
+  if (failing > kMostShown) {
+    out += fmt::format("  and from {} more initial states\n", failing - kMostShown);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string rates_text(const RareRatesResult& result) {
@@ -76,7 +92,7 @@ std::string rates_text(const RareRatesResult& result) {
                        estimate.runs, estimate.invalid, estimate.lost, trace.trace);
     if (!trace.starts.is_single()) {
       out += fmt::format("  {}\n", tried_text(trace.starts));
-      for (const auto& text : failing_states(trace.starts)) out += "  fails: " + text + "\n";
+      out += seen_states(trace.starts);
     }
     if (!trace.law.empty()) out += fmt::format("  starts: {}\n", trace.law);
     if (!trace.left_out.empty()) out += fmt::format("  left out: {}\n", trace.left_out);
@@ -94,6 +110,7 @@ std::string rates_text(const RareRatesResult& result) {
       out += fmt::format("  left out, as it is below zero where all went as predicted: {}\n", part);
     }
   }
+  for (const auto& bound : result.bounds) out += fmt::format("\nbound: {}\n", bound);
   if (result.complete && result.traces.empty()) out += "\nno trace, so nothing was simulated\n";
   return out;
 }
@@ -114,6 +131,7 @@ std::string rates_json(const RareRatesResult& result) {
                        {"lost", estimate.lost},          {"end", to_string(estimate.end)},
                        {"left_out", trace.contradicting}};
     object["initial_states"] = starts_json<RareJson>(trace.starts);
+    object["initial_states"]["chosen_by"] = to_string(result.method);
     if (!trace.law.empty()) object["law"] = trace.law;
     if (!trace.left_out.empty()) object["left_out"] = trace.left_out;
     if (has_interval(estimate, result.method)) {
@@ -123,6 +141,7 @@ std::string rates_json(const RareRatesResult& result) {
     }
     document["traces"].push_back(std::move(object));
   }
+  if (!result.bounds.empty()) document["bounds"] = result.bounds;
   return base::json_text(document) + "\n";
 }
 

@@ -202,6 +202,7 @@ std::string rates_text(const RatesResult& result) {
     }
     for (const auto& value : trace.values) out += value_text(value, trace);
   }
+  for (const auto& bound : result.bounds) out += fmt::format("\nbound: {}\n", bound);
   if (result.complete && result.traces.empty()) out += "\nno trace, so nothing was simulated\n";
   if (!result.complete) out += "\nstopped before all runs were made\n";
   return out;
@@ -250,6 +251,7 @@ std::string rates_json(const RatesResult& result) {
     if (result.indifference)
       add_sequential(*result.indifference, trace.sequential, object["claim"]);
   }
+  if (!result.bounds.empty()) document["bounds"] = result.bounds;
   return base::json_text(document) + "\n";
 }
 

@@ -111,6 +111,10 @@ class Summary {
     const auto undecided = std::count_if(result_.traces.begin(), result_.traces.end(),
                                          [](const auto& trace) { return !trace.is_decided; });
     const auto& first = result_.traces.front();
+    if (std::any_of(result_.traces.begin(), result_.traces.end(),
+                    [](const auto& trace) { return trace.began_elsewhere; })) {
+      return "the simulator does not begin where it is told to (see the note)";
+    }
     if (undecided == 0) {
       return fmt::format("no discrepancy found {}", in_states_text(result_));
     }
@@ -315,6 +319,12 @@ class Summary {
                         result_.comparison == Comparison::kFinal ? "compared at the end"
                                                                  : "compared at every step");
     line("made", text);
+    std::vector<std::string> ignored;
+    for (const auto& entry : result_.compared) {
+      if (entry.how == ComparedFluents::How::kIgnored) ignored.push_back(entry.fluent);
+    }
+    if (!ignored.empty())
+      line("without", fmt::format("{}: not compared", fmt::join(ignored, ", ")));
     line("criterion", criterion_text(result_.criterion, result_.spending));
     if (!result_.coverage.empty()) line("covered", coverage_shares_text(result_));
   }

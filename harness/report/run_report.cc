@@ -310,6 +310,13 @@ std::optional<RunReport> read_run_report(std::string_view text) {
   out.iterations = reported_or_none<std::int64_t>(report, "iterations");
   out.simulations = reported_or_none<std::int64_t>(report, "simulations");
   out.exploration = reported_text(report, "exploration");
+  out.bounds = reported_texts(report, "bounds");
+  if (const auto& compared = reported_member(report, "compared"); compared.is_array()) {
+    for (const auto& entry : compared) {
+      if (reported_text(entry, "compared") != "ignored") continue;
+      out.ignored.push_back(reported_text(entry, "fluent"));
+    }
+  }
   out.execution = reported_text(report, "execution");
   out.comparison = reported_text(report, "compare");
   out.criterion = reported_json(report, "criterion");

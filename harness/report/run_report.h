@@ -80,7 +80,9 @@ struct RunReport {
   std::string verdict;  // as for traces
   std::optional<std::int64_t> iterations, simulations;
   std::string exploration;
-  std::string execution;  // "open-loop", "closed-loop"
+  std::vector<std::string> bounds;   // what was left out, a sentence each
+  std::vector<std::string> ignored;  // fluents that are not compared
+  std::string execution;             // "open-loop", "closed-loop"
   std::string comparison;
   // JSON on one line, members in order of their names; empty: not reported.
   std::string criterion, simulator;

@@ -58,6 +58,11 @@ std::string start_lines(const TraceResult& trace) {
                                   : fmt::format("{} to {}", interval.lower, interval.upper)});
   }
   if (rows.empty()) return out;
+  if (!trace.starts.is_single() && trace.starts.law != Initial::kFirst) {
+    out += labelled("",
+                    "that is the first initial state, and below is where its starts lie; others "
+                    "have cells of their own");
+  }
   out += labelled_table("start region", rows);
   if (!trace.left_out.empty()) {
     out += labelled("left out", trace.left_out + ", where no start is drawn");

@@ -38,10 +38,12 @@ enum class RareEventEnd : std::uint8_t {
   kUnresolved,  // splitting: the estimates differ by more than an interval can be made of
   kLost,        // splitting: runs were lost, for which it has no worst case
   kInvalid,     // hardly any start is valid
+  kUnequal,     // by the caller: starts were not valid, and the law is of several parts
   kStopped,     // by the caller
 };
 inline constexpr auto kRareEventEndWords = base::word_table<RareEventEnd>(
-    "estimated", "not-reached", "flat", "not-resolved", "lost", "invalid-starts", "stopped");
+    "estimated", "not-reached", "flat", "not-resolved", "lost", "invalid-starts", "unequal-starts",
+    "stopped");
 constexpr std::string_view to_string(RareEventEnd end) { return kRareEventEndWords.of(end); }
 
 struct RareEventResult {

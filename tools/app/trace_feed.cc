@@ -243,6 +243,17 @@ std::string EnumeratedTraces::exploration() const {
 
 std::vector<std::string> EnumeratedTraces::bounds() const {
   auto out = open_end_texts(*model_, enumerator_->open_ends());
+  const auto left_out = weightless_ + static_cast<std::int64_t>(states_without_weight_);
+  if (left_out > 0) {
+    auto text = fmt::format("{} not simulated, as `start_weights` gives {} the weight 0",
+                            base::counted(left_out, "initial state is", "initial states are"),
+                            base::agreed(left_out, "it", "them"));
+    if (without_weight_ > 0) {
+      text += fmt::format("; with {} not simulated at all",
+                          base::counted(without_weight_, "trace", "traces"));
+    }
+    out.push_back(std::move(text));
+  }
   if (!unreached_) return out;
   for (auto& text : unreached_->texts(*context_)) out.push_back(std::move(text));
   return out;
@@ -299,7 +310,10 @@ base::Status EnumeratedTraces::weigh(harness::TraceStarts& starts,
   auto states = std::move(starts.states);
   starts.states.clear();
   for (std::size_t i = 0; i < states.size(); ++i) {
-    if (weights->weights[i] == 0.0) continue;
+    if (weights->weights[i] == 0.0) {
+      ++weightless_;
+      continue;
+    }
     starts.states.push_back(std::move(states[i]));
     starts.weights.push_back(weights->weights[i]);
   }

@@ -64,6 +64,7 @@ class EnumeratedTraces final : public harness::TraceFeed {
   std::int64_t with_weight_ = 0;           // traces with a state of a weight above 0
   std::int64_t without_weight_ = 0;        // others, which are left out
   std::size_t states_without_weight_ = 0;  // of these
+  std::int64_t weightless_ = 0;  // initial states of traces that are simulated, left out of them
   bool weights_told_ = false;
   /// The fluents that distinguish initial states, by the number of the trace.
   std::map<std::int64_t, std::vector<compiler::FluentId>> told_by_;

@@ -176,7 +176,10 @@ int run_proof(const ProveOptions& options, const ScenarioModel& loaded, Invocati
                             : invocation.result(proof_text(proved));
   if (contradicted) return 0;
   if (stopped || !any) return 4;
-  return refuted ? 1 : open || !proved.are_all() ? 4 : 0;
+  // A state that no start realises was not looked at either.
+  const bool is_whole =
+      proved.are_all() && (options.state > 0 || proved.about.unrealisable.empty());
+  return refuted ? 1 : open || !is_whole ? 4 : 0;
 }
 
 int check_proof(const ProveOptions& options, const ScenarioModel& loaded, Invocation& invocation) {

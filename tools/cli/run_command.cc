@@ -190,6 +190,10 @@ base::Status check_closed(const RunOptions& options, const harness::Scenario& sc
     return refuse(options.search > 0 ? "--search" : "search",
                   "in closed loop there is no trace whose starts could be searched");
   }
+  if (scenario.initial == harness::Initial::kFirst) {
+    return refuse("--execution closed-loop",
+                  "`initial: first` is of traces: executions begin in every initial state");
+  }
   if (!scenario.match_model) {
     return refuse(options.judging.match == "trace" ? "--match=trace" : "match: trace",
                   "in closed loop there is no trace to hold observations against, only the model");

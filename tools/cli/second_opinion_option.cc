@@ -140,8 +140,14 @@ base::Status OpinionOfRun::ask_with(harness::CampaignResult& result, const Ask& 
 }
 
 base::Status OpinionOfRun::ask(harness::TraceFeed& feed, harness::CampaignResult& result) {
-  harness::TracesByNumber traces;
-  for (const auto& trace : result.traces) traces.emplace(trace.trace->number, trace.trace);
+  harness::TracesOfRun traces;
+  for (const auto& trace : result.traces) {
+    const auto number = trace.trace->number;
+    traces.emplace(std::pair(number, 0), trace.trace);
+    for (const auto& [state, counts] : trace.starts.states) {
+      if (counts.trace) traces.emplace(std::pair(number, state), counts.trace);
+    }
+  }
   return ask_with(result, [&](std::vector<harness::OpinionQuestion> questions) {
     return harness::opinions_on_traces(other_.scenario, *bench_, feed, traces, std::move(questions),
                                        invocation_.sink());

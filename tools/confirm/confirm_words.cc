@@ -250,8 +250,8 @@ std::string shrunk_words(const Confirmation& confirmation) {
   if (!confirmation.shrunk || !confirmation.shrunk->middle) return {};  // nothing was moved
   const auto& shrunk = *confirmation.shrunk;
   if (shrunk.middle == StartVerdict::kFails) {
-    return "In the middle of the cell it happens as well: no parameter of the start is needed for "
-           "it.";
+    return "In the middle of the cell it happens as well, so nothing was moved from there: whether "
+           "other starts avoid it was not looked at.";
   }
   const auto deciding = names_of(confirmation, ParameterRole::kDecides);
   const auto idle = names_of(confirmation, ParameterRole::kIndifferent);

@@ -111,6 +111,8 @@ bool add_report(const std::string& text, PageData& page) {
   page.simulations = report->simulations.value_or(0);
   page.tool_version = report->tool_version;
   page.exploration = report->exploration;
+  page.bounds = report->bounds;
+  page.ignored = report->ignored;
   page.interrupted = report->interrupted.value_or(false);
   page.closed_loop = report->execution == to_string(harness::Execution::kClosedLoop);
   if (!report->simulator.empty()) {

@@ -256,6 +256,8 @@ struct PageData {
   bool running = false;  // there is no report yet
   double confidence = 0.99, epsilon = 0.05;
   std::string claim;                 // of all traces together; empty: there is none
+  std::vector<std::string> bounds;   // what was left out, a sentence each
+  std::vector<std::string> ignored;  // fluents that are not compared
   harness::CriterionSpec asked;      // the criterion, of a trace by itself
   bool is_paper = false;             // the criterion that ends a trace is the paper's
   std::vector<std::string> banners;  // what is missing or wrong, one sentence each

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -281,6 +282,10 @@ std::string verdict_section(const PageData& page) {
     out +=
         fact("Explored", page.exploration == "stopped" ? "stopped before all traces were explored"
                                                        : page.exploration);
+  }
+  for (const auto& bound : page.bounds) out += fact("Left out", bound);
+  if (!page.ignored.empty()) {
+    out += fact("Not compared", fmt::format("{}", fmt::join(page.ignored, ", ")));
   }
   std::vector<harness::LossCount> losses;
   for (const auto& trace : page.traces) harness::add_losses(trace.losses, losses);
