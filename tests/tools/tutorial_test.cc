@@ -1,5 +1,5 @@
-// docs/tutorial.md, played from its first command to its last in an empty folder: every command
-// prints what the page shows below it, and files are written where the page says so.
+// docs/tutorial/tutorial.md, played from its first command to its last in an empty folder: every
+// command prints what the page shows below it, and files are written where the page says so.
 
 #include <doctest/doctest.h>
 
@@ -101,7 +101,7 @@ TEST_CASE("the tutorial's commands print what the tutorial shows") {
   fs::create_directory(folder);
   const auto program = fs::path(CliFixture::program()).parent_path().string();
   std::size_t commands = 0, files = 0;
-  for (const auto& step : steps_of("tutorial.md")) {
+  for (const auto& step : steps_of("tutorial/tutorial.md")) {
     if (!step.file.empty()) {
       std::ofstream out(folder / step.file);
       for (const auto& line : step.lines) out << line << '\n';
