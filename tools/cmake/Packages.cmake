@@ -61,7 +61,7 @@ foreach(package parallax libparallax-dev)
     install(FILES ${PROJECT_BINARY_DIR}/generated/copyright
       DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
     # What the library's headers are for, and the program that shows it.
-    install(FILES ${PROJECT_SOURCE_DIR}/docs/guide/library.md
+    install(FILES ${PROJECT_SOURCE_DIR}/docs/guide/library/README.md RENAME library.md
       DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/guide/library/
       DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package}/examples COMPONENT ${component})

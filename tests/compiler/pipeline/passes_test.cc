@@ -47,15 +47,15 @@ bool has(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("docs/internals/design.md lists the passes as they run") {
-  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/internals/design.md");
+TEST_CASE("docs/internals/architecture.md lists the passes as they run") {
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/internals/architecture.md");
   std::ostringstream document;
   document << in.rdbuf();
   std::string list;
   for (const auto& pass : compiler::compile_passes()) {
     list += fmt::format("    {:<18}{}\n", pass.name, pass.description);
   }
-  CHECK_MESSAGE(has(document.str(), '\n' + list + '\n'), "docs/internals/design.md should say:\n"
+  CHECK_MESSAGE(has(document.str(), '\n' + list + '\n'), "docs/internals/architecture.md should say:\n"
                                                              << list);
 }
 
