@@ -101,6 +101,11 @@ class PageReader {
   std::vector<PageStep> steps_;
 };
 
+/// What is compared of a line: blanks at its end are not shown on a page.
+std::string compared(const std::string& line) {
+  return rounded(line.substr(0, line.find_last_not_of(' ') + 1));
+}
+
 bool fits_from(const std::vector<std::string>& shown, std::size_t s,
                const std::vector<std::string>& printed, std::size_t p) {
   for (; s < shown.size(); ++s, ++p) {
@@ -110,7 +115,7 @@ bool fits_from(const std::vector<std::string>& shown, std::size_t s,
       }
       return false;
     }
-    if (p == printed.size() || rounded(shown[s]) != rounded(printed[p])) return false;
+    if (p == printed.size() || compared(shown[s]) != compared(printed[p])) return false;
   }
   return p == printed.size();
 }

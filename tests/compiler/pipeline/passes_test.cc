@@ -55,8 +55,9 @@ TEST_CASE("docs/internals/architecture.md lists the passes as they run") {
   for (const auto& pass : compiler::compile_passes()) {
     list += fmt::format("    {:<18}{}\n", pass.name, pass.description);
   }
-  CHECK_MESSAGE(has(document.str(), '\n' + list + '\n'), "docs/internals/architecture.md should say:\n"
-                                                             << list);
+  CHECK_MESSAGE(has(document.str(), '\n' + list + '\n'),
+                "docs/internals/architecture.md should say:\n"
+                    << list);
 }
 
 TEST_CASE("every pass is logged, in the order of the table, under a name of its own") {
