@@ -31,7 +31,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/README.md COMPONENT program
   DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/parallax)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs COMPONENT program
   DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/parallax
-  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "library" EXCLUDE)
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/guide/library COMPONENT development
   DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libparallax-dev/examples)
 # Installed apart from the documentation, which small installations leave out.
