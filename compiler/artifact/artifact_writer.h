@@ -14,7 +14,7 @@ struct ArtifactOptions {
 };
 
 /// The model as DIMACS that any SAT solver reads and that `read_artifact` turns into an equal model
-/// (docs/artifact_format.md). Equal models give equal bytes. No line depends on how many clauses,
+/// (docs/reference/formats.md). Equal models give equal bytes. No line depends on how many clauses,
 /// axioms or source lines come before what it says, so that the difference of two files is the
 /// difference of the models.
 ///

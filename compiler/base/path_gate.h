@@ -14,7 +14,7 @@ inline constexpr std::string_view kRootMarker = ".parallax-root";
 /// Which files a file may name: those that really lie (links resolved) below the folder of a file
 /// that the user named, or below the nearest folder above it that holds kRootMarker. A marker in a
 /// folder that others can write to does not count. Home folders and `/` are never roots as a whole:
-/// of them only the visible files that lie directly there are admitted. docs/trust.md.
+/// of them only the visible files that lie directly there are admitted. docs/reference/trust.md.
 class PathGate {
  public:
   /// `files`, if given, outlives the gate and notes every place where a marker was looked for.

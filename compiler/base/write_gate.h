@@ -11,7 +11,7 @@ namespace parallax::base {
 /// Which files a command may change that a file names, and not the user: those that really lie
 /// (links resolved) below the current folder, or below the nearest folder above it that is a git
 /// repository or holds kRootMarker. A journal names the scenario as it lay where the run was made,
-/// which in a copied project is the original. docs/trust.md.
+/// which in a copied project is the original. docs/reference/trust.md.
 class WriteGate {
  public:
   /// `allow_outside`: everything may be changed.

@@ -7,7 +7,7 @@ namespace parallax::compiler {
 
 // Forms that address the world around the robot rather than the robot: logging, the belief state,
 // markers and the simulator's world. They are accepted and do nothing, because the model's own
-// axioms describe the world. docs/plan_language.md lists the names.
+// axioms describe the world. docs/reference/plan_language.md lists the names.
 
 /// Forms that do nothing and have no value, whatever package they are of.
 std::span<const std::string_view> ignored_forms();

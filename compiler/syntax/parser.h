@@ -36,7 +36,7 @@ base::Result<ParsedFormula> parse_formula(const base::SourceRange& range,
 base::Result<ParsedFormula> parse_formula(base::FileId file, const base::SourceFiles& files,
                                           base::DiagnosticSink& sink);
 
-/// The same, and temporal operators may stand in it (docs/temporal.md).
+/// The same, and temporal operators may stand in it (docs/reference/model_language.md).
 base::Result<ParsedFormula> parse_temporal_formula(const base::SourceRange& range,
                                                    const base::SourceFiles& files,
                                                    base::DiagnosticSink& sink);

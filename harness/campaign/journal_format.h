@@ -1,6 +1,6 @@
 #pragma once
 
-// The lines of RUN_DIR/journal.ndjson as text (docs/journal_format.md): a header, then one line
+// The lines of RUN_DIR/journal.ndjson as text (docs/reference/formats.md): a header, then one line
 // per trace before its first sample, one per finished simulation, in order of completion.
 
 #include <cstdint>

@@ -4,7 +4,8 @@
 // them in random orders, each state once before any comes twice. For clean runs this is as good as
 // independent draws: the chance that n of them are all clean is a symmetric mean of products of the
 // states' chances, at most the n-th power of their mean (Maclaurin's inequality). Once a run was
-// lost, draws are independent, as the bound for runs with failures asks for (docs/statistics.md).
+// lost, draws are independent, as the bound for runs with failures asks for
+// (docs/internals/statistics.md).
 //
 // A trace with more states has them drawn: each group of fluents gets one of the values that it can
 // have by itself, until the model has an execution from the whole. The draws are uniform over all

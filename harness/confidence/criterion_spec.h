@@ -33,7 +33,7 @@ inline constexpr auto kRootWords = base::word_table<RootKind>("initial", "final"
 inline constexpr auto kInterceptWords = base::word_table<InterceptKind>("none", "centred", "free");
 inline constexpr auto kIntervalWords = base::word_table<IntervalKind>("mean", "prediction");
 
-/// The readings of the paper's rule (docs/statistics.md has the table of ambiguities).
+/// The readings of the paper's rule (docs/internals/statistics.md has the table of ambiguities).
 struct PaperRuleSpec {
   SigmaKind sigma = SigmaKind::kSse;
   RootKind root = RootKind::kInitial;

@@ -45,11 +45,11 @@ struct PaperVerdict {
   std::string why_not;                       // empty if `stop`
 };
 
-/// The stop rule of Meywerk et al., Section III-C, in the reading `spec` (docs/statistics.md).
-/// Stop: every tested final parameter's interval lies in its expected cell. It is neither valid
-/// under repeated looks nor a probability of error. `confidence_level` in (0, 1).
-/// Refuses, with `why_not`, fewer than n + extra_runs runs, dependent columns, a start that does
-/// not vary and a final state without continuous parameters.
+/// The stop rule of Meywerk et al., Section III-C, in the reading `spec`
+/// (docs/internals/statistics.md). Stop: every tested final parameter's interval lies in its
+/// expected cell. It is neither valid under repeated looks nor a probability of error.
+/// `confidence_level` in (0, 1). Refuses, with `why_not`, fewer than n + extra_runs runs, dependent
+/// columns, a start that does not vary and a final state without continuous parameters.
 PaperVerdict paper_rule(const RegressionInput& input, const PaperRuleSpec& spec,
                         double confidence_level);
 /// Refuses besides when a run ended in another state that the model admits: the rule supposes one.

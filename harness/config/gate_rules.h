@@ -62,8 +62,8 @@ struct GateRules {
   base::SourceRange source;       // of the file's first key
 };
 
-/// Reads rules (docs/diff.md). Unknown keys are refused with the near name, and a section that
-/// forbids nothing, as a gate that cannot fail.
+/// Reads rules (docs/reference/diff.md). Unknown keys are refused with the near name, and a section
+/// that forbids nothing, as a gate that cannot fail.
 base::Result<GateRules> load_gate_rules(const std::filesystem::path& path, base::SourceFiles& files,
                                         base::DiagnosticSink& sink);
 

@@ -7,11 +7,10 @@
 
 namespace parallax::harness {
 
-/// Every key of scenario files, suite manifests and ledgers (docs/scenario_format.md,
-/// docs/suite_format.md, docs/ledger.md), written here alone: what reads a key, what refuses others
-/// and what speaks of it in a message say the same word, and a misspelt one does not compile.
-/// Region axes are keys under their own names
-/// (`to_string`).
+/// Every key of scenario files, suite manifests and ledgers (docs/reference/scenario.md,
+/// docs/reference/suites.md), written here alone: what reads a key, what refuses others and what
+/// speaks of it in a message say the same word, and a misspelt one does not compile. Region axes
+/// are keys under their own names (`to_string`).
 struct Key {
   static constexpr std::string_view kAbove = "above";
   static constexpr std::string_view kActTimeoutS = "act_timeout_s";

@@ -38,7 +38,7 @@ struct LedgerEntry {
 /// "open", "repaired in 3f2a1c0", "accepted because ...": as the file has it, and people read it.
 std::string status_text(const LedgerEntry& entry);
 
-/// The known discrepancies of a project, in the order of the file (docs/ledger.md).
+/// The known discrepancies of a project, in the order of the file (docs/reference/suites.md).
 struct Ledger {
   base::FileId file;
   std::vector<LedgerEntry> entries;

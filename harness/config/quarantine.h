@@ -12,7 +12,7 @@ namespace parallax::harness {
 using Quarantine = std::map<std::string, std::string>;
 
 /// Reads a list `quarantine: [{case: NAME, because: TEXT}, ...]`. Both keys are required, a case
-/// stands there once, and a reason is not empty (docs/suite_format.md).
+/// stands there once, and a reason is not empty (docs/reference/suites.md).
 base::Result<Quarantine> load_quarantine(const std::filesystem::path& path,
                                          base::SourceFiles& files, base::DiagnosticSink& sink);
 

@@ -37,7 +37,7 @@ std::vector<LocatedText> located_texts(const YamlNode& node, std::string_view ke
 
 /// Each reads one section of a scenario, reporting at its keys; what is wrong keeps its default.
 
-/// `world`: solver, friction, floor, bodies, joints, robot (docs/scenario_format.md).
+/// `world`: solver, friction, floor, bodies, joints, robot (docs/reference/scenario.md).
 WorldSpec read_world(const YamlNode& node, EngineKind engine, base::DiagnosticSink& sink);
 
 /// Puts what the `sdf`, `urdf` or `mjcf` of `world` says under the other keys of `world`, each

@@ -18,7 +18,7 @@ struct TraceExpectation {
   bool complete = true;
   /// The text that `parallax traces` must print; the file need not exist.
   std::optional<LocatedText> golden;
-  std::vector<LocatedText> holds, violated;  // properties (docs/temporal.md)
+  std::vector<LocatedText> holds, violated;  // properties (docs/reference/model_language.md)
 
   bool lists_traces() const { return traces || golden; }
 };
@@ -36,7 +36,7 @@ struct ManifestCase {
   TraceExpectation expect;
 };
 
-/// A suite manifest as checked data (docs/suite_format.md), cases in the order of the file.
+/// A suite manifest as checked data (docs/reference/suites.md), cases in the order of the file.
 struct SuiteManifest {
   std::filesystem::path file;
   std::vector<ManifestCase> cases;

@@ -220,7 +220,8 @@ void refuse_mergers(const YamlNode& imported, const YamlNode& world, std::string
                            kind, entry.key, *own))
         .note(below->key_range, fmt::format("the {} of the file", kind))
         .help(
-            "Give one of the two another name; docs/import.md says which keys can be laid over "
+            "Give one of the two another name; docs/guide/worlds.md says which keys can be laid "
+            "over "
             "what is imported.");
   }
 }

@@ -63,7 +63,7 @@ struct ConformanceFinding {
 enum class Repeatability : std::uint8_t { kUnknown, kNone, kTolerance, kBitwise };
 std::string_view to_string(Repeatability repeatability);
 
-/// The claims that runs with this simulator can support, as measured; docs/adapters.md.
+/// The claims that runs with this simulator can support, as measured; docs/guide/simulators.md.
 struct SupportedClaims {
   std::string replay, retries, independence, jobs, search, recordings;
 };

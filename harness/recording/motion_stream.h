@@ -12,8 +12,8 @@
 
 namespace parallax::harness {
 
-// Frames of moving bodies as bytes (docs/recording.md): of each frame what has changed since the
-// one before it, in whole steps of time, place and turn.
+// Frames of moving bodies as bytes (docs/reference/formats.md): of each frame what has changed
+// since the one before it, in whole steps of time, place and turn.
 
 inline constexpr double kFrameTime_s = 1e-3;
 inline constexpr double kFramePosition_m = 0.5e-3;

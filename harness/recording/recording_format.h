@@ -9,7 +9,7 @@
 
 namespace parallax::harness {
 
-/// A recording as the bytes of its file (docs/recording.md).
+/// A recording as the bytes of its file (docs/reference/formats.md).
 std::string encode(const Recording& recording);
 
 /// The fault in a file, and the byte at which it is.

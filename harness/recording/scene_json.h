@@ -8,8 +8,9 @@
 
 namespace parallax::harness {
 
-/// One JSON object with the members `bodies`, `grippers`, `arms` and `camera`, as docs/recording.md
-/// has them: in the head of a recording, and in what a simulator says of itself.
+/// One JSON object with the members `bodies`, `grippers`, `arms` and `camera`, as
+/// docs/reference/formats.md has them: in the head of a recording, and in what a simulator says of
+/// itself.
 std::string scene_text(const RecordedScene& scene);
 
 /// Other members are ignored. None, and `why` says what is wrong: a scene has at most 10,000

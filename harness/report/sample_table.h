@@ -9,7 +9,7 @@
 namespace parallax::harness {
 
 // One row for each simulation, in the order of the rows; numbers are decimals that read back to the
-// same bits (docs/samples.md).
+// same bits (docs/guide/running.md).
 
 /// The beginning of a file that samples_csv wrote.
 inline constexpr const char* kSamplesCsvMark = "trace,sample,seed,start,rejected,retries,outcome,";

@@ -8,7 +8,7 @@
 
 namespace parallax::harness {
 
-// Checks of answers that can be read (docs/simulator_protocol.md). Runs and `adapter-check` share
+// Checks of answers that can be read (docs/reference/protocol.md). Runs and `adapter-check` share
 // them, so that neither lets pass what the other refuses.
 
 /// Faults of a simulator's handshake: no name, an unknown determinism, names that are declared

@@ -1,5 +1,6 @@
-// Which grips slip although Coulomb's law holds them, by engine, step and form: docs/physics.md,
-// "Grips". Only what was measured is said: a form, an engine and steps of 0.5 to 4 ms.
+// Which grips slip although Coulomb's law holds them, by engine, step and form:
+// docs/internals/physics.md, "Grips". Only what was measured is said: a form, an engine and steps
+// of 0.5 to 4 ms.
 
 #include "harness/world/grip_limits.h"
 

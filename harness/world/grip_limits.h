@@ -45,10 +45,10 @@ void widen_by_action(const WorldSpec& spec, std::string_view controller, const S
                      std::map<std::string, GripRange>& ranges);
 
 /// The bodies of a world that its robot can grip and that may slip because of engine and step, by
-/// name. The limits are those of the table in docs/physics.md ("Grips"), which grip_limits_test
-/// holds against this. Left out are grips that at rest always hold five times what they have to,
-/// where none of those slipped, grips that by Coulomb's law hold nothing, and loads without weight.
-/// `ranges`: by body. `spec` must pass check_world.
+/// name. The limits are those of the table in docs/internals/physics.md ("Grips"), which
+/// grip_limits_test holds against this. Left out are grips that at rest always hold five times what
+/// they have to, where none of those slipped, grips that by Coulomb's law hold nothing, and loads
+/// without weight. `ranges`: by body. `spec` must pass check_world.
 std::vector<DoubtfulGrip> doubtful_grips(const WorldSpec& spec,
                                          const std::map<std::string, GripRange>& ranges = {});
 

@@ -1,7 +1,7 @@
 """A world of facts behind a pipe: no bodies, no clock. It knows what the model does not, that nobody
 drives to the sink while the drawer before it is open.
 
-It speaks the protocol itself (docs/simulator_protocol.md): one line of JSON asks, one answers.
+It speaks the protocol itself (docs/reference/protocol.md): one line of JSON asks, one answers.
 """
 
 import json

@@ -2,8 +2,8 @@
 //
 // One formula of a random model has a conjunction behind its arrow. The test writes out each of its
 // instances that exists as a whole, one ground formula for each conjunct, and leaves out the
-// others, as docs/language.md defines instances. Both texts must have the same traces. The oracles
-// of the fuzzer read the formula as it stands.
+// others, as docs/reference/model_language.md defines instances. Both texts must have the same
+// traces. The oracles of the fuzzer read the formula as it stands.
 
 #include <doctest/doctest.h>
 

@@ -103,7 +103,7 @@ class OldEncoder : OldTerms {
 
   /// A part that is constant counts as a constant at once. The program of 2005 does so in
   /// conjunctions and disjunctions alone; parts below a negation or a quantifier it may discard
-  /// (docs/compatibility.md).
+  /// (docs/reference/model_language.md).
   OldTree tree(compiler::TypedFormulaId id) {
     auto made = written_out(id);
     if (made.has_beyond()) return made;

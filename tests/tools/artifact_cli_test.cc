@@ -18,7 +18,7 @@ constexpr const char* kLamps =
     "[event1,event2,time] Happens(event1,time) & Happens(event2,time) -> event1=event2.\n"
     "[lamp] !HoldsAt(On(lamp),0).\nrange time 0 3\n";
 
-/// A reader of the names and clauses, written from docs/artifact_format.md alone.
+/// A reader of the names and clauses, written from docs/reference/formats.md alone.
 struct Stranger {
   std::map<int, std::string> names;  // "HoldsAt On(A) 2" by variable
   std::vector<std::vector<int>> clauses;

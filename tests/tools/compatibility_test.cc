@@ -1,6 +1,6 @@
-// docs/compatibility.md: every known quirk of the reasoner of 2005, and the treatment by this
-// program. Each row's model is run in both meanings; the page shows the results. On a difference
-// the test prints the table as it should be.
+// docs/reference/model_language.md: every known quirk of the reasoner of 2005, and the treatment by
+// this program. Each row's model is run in both meanings; the page shows the results. On a
+// difference the test prints the table as it should be.
 
 #include <doctest/doctest.h>
 
@@ -157,7 +157,7 @@ std::string outcome(const CliFixture& cli, const std::vector<std::string>& more,
 
 }  // namespace
 
-TEST_CASE("docs/compatibility.md shows every quirk as it is") {
+TEST_CASE("docs/reference/model_language.md shows every quirk as it is") {
   std::string table =
       "| the program of 2005 | models it finds | default | `--compat decreasoner` | followed |\n"
       "|---|---|---|---|---|\n";
@@ -179,7 +179,8 @@ TEST_CASE("docs/compatibility.md shows every quirk as it is") {
              " |\n";
   }
   std::ostringstream page;
-  page << std::ifstream(std::string(PARALLAX_SOURCE_DIR) + "/docs/compatibility.md").rdbuf();
+  page << std::ifstream(std::string(PARALLAX_SOURCE_DIR) + "/docs/reference/model_language.md")
+              .rdbuf();
   const auto text = page.str();
   const auto begin = text.find(kBegin), end = text.find(kEnd);
   REQUIRE(begin != text.npos);

@@ -14,6 +14,8 @@
 namespace parallax::test {
 namespace {
 
+namespace fs = std::filesystem;
+
 std::string document(const std::string& name) {
   std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/" + name);
   std::ostringstream out;
@@ -21,9 +23,9 @@ std::string document(const std::string& name) {
   return out.str();
 }
 
-TEST_CASE("docs/diagnostics.md is what tools/update_docs makes") {
+TEST_CASE("docs/reference/diagnostics.md is what tools/update_docs makes") {
   const CliFixture cli;
-  CHECK(cli.parallax({"diagnostics"}).out == document("docs/diagnostics.md"));
+  CHECK(cli.parallax({"diagnostics"}).out == document("docs/reference/diagnostics.md"));
 }
 
 TEST_CASE("codes and names of diagnostics are unique") {
@@ -37,13 +39,13 @@ TEST_CASE("codes and names of diagnostics are unique") {
 }
 
 TEST_CASE("every page that a text of the project names exists") {
-  const std::regex page("docs/[a-z_]+\\.md");
-  const std::filesystem::path root = PARALLAX_SOURCE_DIR;
+  const std::regex page("docs/[a-z_/]+\\.md");
+  const fs::path root = PARALLAX_SOURCE_DIR;
   std::set<std::string> named;
   for (const auto* folder : {"compiler", "runtime", "harness", "tools", "docs", "scenarios"}) {
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
       if (!entry.is_regular_file()) continue;
-      const auto text = document(std::filesystem::relative(entry.path(), root).string());
+      const auto text = document(fs::relative(entry.path(), root).string());
       for (auto it = std::sregex_iterator(text.begin(), text.end(), page);
            it != std::sregex_iterator(); ++it) {
         named.insert(it->str());
@@ -51,7 +53,43 @@ TEST_CASE("every page that a text of the project names exists") {
     }
   }
   CHECK(named.size() > 5);
-  for (const auto& name : named) CHECK_MESSAGE(std::filesystem::exists(root / name), name);
+  for (const auto& name : named) CHECK_MESSAGE(fs::exists(root / name), name);
+}
+
+TEST_CASE("the page about the command line is what tools/update_docs makes") {
+  const CliFixture cli;
+  const auto page = document("docs/reference/command_line.md");
+  const auto stands = [&](const std::vector<std::string>& arguments) {
+    std::istringstream lines(cli.parallax(arguments).out);
+    for (std::string line; std::getline(lines, line);) {
+      CHECK_MESSAGE(page.find((line.empty() ? "" : "    " + line) + '\n') != page.npos, line);
+    }
+  };
+  stands({"--help"});
+  for (const auto* topic : {"exit-codes", "files", "output", "seeds", "trust", "limits"}) {
+    stands({"help", topic});
+  }
+}
+
+TEST_CASE("every link from page to page leads to a file") {
+  const fs::path root = PARALLAX_SOURCE_DIR;
+  std::vector<fs::path> pages = {root / "README.md", root / "CHANGELOG.md"};
+  for (const auto* folder : {"docs", "scenarios"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      if (entry.path().extension() == ".md") pages.push_back(entry.path());
+    }
+  }
+  const std::regex link(R"(\]\(([^)#\s:]+)(#[^)\s]*)?\))");
+  std::size_t links = 0;
+  for (const auto& page : pages) {
+    const auto text = document(fs::relative(page, root).string());
+    for (auto it = std::sregex_iterator(text.begin(), text.end(), link);
+         it != std::sregex_iterator(); ++it, ++links) {
+      const auto target = page.parent_path() / (*it)[1].str();
+      CHECK_MESSAGE(fs::exists(target), fs::relative(page, root).string() << ": " << it->str());
+    }
+  }
+  CHECK(links > 200);
 }
 
 TEST_CASE("every command of the README is one that the program knows") {

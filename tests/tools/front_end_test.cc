@@ -96,10 +96,10 @@ std::vector<std::string> blocks_of(const std::string& page) {
   return blocks;
 }
 
-TEST_CASE("docs/editor.md shows what the program says and how it formats") {
+TEST_CASE("docs/guide/models.md shows what the program says and how it formats") {
   const CliFixture cli;
   std::ostringstream page;
-  page << std::ifstream(std::string(PARALLAX_SOURCE_DIR) + "/docs/editor.md").rdbuf();
+  page << std::ifstream(std::string(PARALLAX_SOURCE_DIR) + "/docs/guide/models.md").rdbuf();
   const auto blocks = blocks_of(page.str());
   REQUIRE(blocks.size() > 5);
   cli.write("lamp.e", blocks[1]);

@@ -1,5 +1,5 @@
-// Every marked model of docs/language.md has the number of traces that the page says, and the
-// warnings that its mark names after it.
+// Every marked model of docs/reference/model_language.md has the number of traces that the page
+// says, and the warnings that its mark names after it.
 
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@ namespace parallax::test {
 namespace {
 
 std::string guide() {
-  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/language.md");
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/reference/model_language.md");
   std::ostringstream out;
   out << in.rdbuf();
   return out.str();

@@ -43,8 +43,8 @@ TEST_CASE("a mesh is fetched as its box would be, and pictures, reports and expo
       cli.parallax({"run", "scenario.yaml", "--out", "out", "--jobs", "2", "--epsilon", "0.2"});
   CAPTURE(run.out);
   CAPTURE(run.err);
-  // The model is right about this world, whatever the form of the box; docs/import.md says how
-  // seldom a mesh slips where a box does not.
+  // The model is right about this world, whatever the form of the box; docs/guide/worlds.md says
+  // how seldom a mesh slips where a box does not.
   CHECK(run.code == 0);
   CHECK(run.err.find("W5144") == std::string::npos);
   CHECK(cli.parallax({"replay", "out"}).code == 0);

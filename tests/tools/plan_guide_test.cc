@@ -1,4 +1,4 @@
-// docs/plan_language.md: its commands and its example work as the page says.
+// docs/reference/plan_language.md: its commands and its example work as the page says.
 
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@ namespace parallax::test {
 namespace {
 
 std::vector<std::string> page() {
-  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/plan_language.md");
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/reference/plan_language.md");
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   REQUIRE(lines.size() > 100);

@@ -1,5 +1,5 @@
 // Campaigns and suites on a Slurm that tools/cluster-test has started for this program: two nodes
-// on one machine. The scripts are those of docs/cluster.md.
+// on one machine. The scripts are those of docs/guide/clusters.md.
 
 #include <doctest/doctest.h>
 
@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 
 /// The block of the page whose second line names this file.
 std::string script_of_page(const std::string& name) {
-  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/cluster.md");
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/guide/clusters.md");
   std::string block;
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with("    ")) {
@@ -31,7 +31,7 @@ std::string script_of_page(const std::string& name) {
     if (block.find("\n# " + name + "\n") != std::string::npos) return block;
     block.clear();
   }
-  throw std::runtime_error("docs/cluster.md has no script " + name);
+  throw std::runtime_error("docs/guide/clusters.md has no script " + name);
 }
 
 /// A command of Slurm in the fixture's folder, for whose jobs `parallax` is this build's.

@@ -1,4 +1,4 @@
-// Temporal formulas on the command line, in suites and scenarios: docs/temporal.md.
+// Temporal formulas on the command line, in suites and scenarios: docs/reference/model_language.md.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Files of unknown origin: the limits on the files and programs that they can make Parallax read,
-// overwrite and start (docs/trust.md).
+// overwrite and start (docs/reference/trust.md).
 
 #include <sys/stat.h>
 #include <unistd.h>

@@ -18,7 +18,7 @@ class Context {
     bool json = false;                 // the answer is one document, not text
     double time_limit_s = 0.0;         // 0: none; explanations try less where it is short
     std::int64_t memory_limit_mb = 0;  // 0: none; proofs take half of it
-    bool allow_outside = false;        // files may name any other (docs/trust.md)
+    bool allow_outside = false;        // files may name any other (docs/reference/trust.md)
   };
 
   Context() : stop_(&own_stop_) {}

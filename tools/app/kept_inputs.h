@@ -8,7 +8,7 @@
 
 namespace parallax::tools {
 
-/// The file of a run folder with the texts that the run read (docs/journal_format.md).
+/// The file of a run folder with the texts that the run read (docs/reference/formats.md).
 inline constexpr std::string_view kInputsName = "inputs.json";
 
 /// The scenario and every file that was read with it, as text for kInputsName. Only files below the

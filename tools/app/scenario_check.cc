@@ -308,7 +308,7 @@ void warn_of_grips(const harness::Scenario& scenario, base::DiagnosticSink& sink
     warning.help(fmt::format(
         "Write `world: {{solver: {{timestep_s: {:g}}}}}`, at which none slipped, or `simulator: "
         "{{engine: {}}}`: what slips here is the solver's doing, not the model's "
-        "(docs/physics.md, \"Grips\").",
+        "(docs/internals/physics.md, \"Grips\").",
         grip.sound_s, to_string(other)));
   }
 }

@@ -15,7 +15,7 @@ namespace parallax::tools {
 /// "worker"}) started for the scenario. The words of `supervisor` precede a command of the
 /// scenario: a program that, when it ends, also ends everything that it has started. Raising
 /// `stop`, which outlives the factory, interrupts the simulator. The caller checks whether the
-/// command may be started (docs/trust.md).
+/// command may be started (docs/reference/trust.md).
 harness::SimulatorFactory simulator_factory(const ScenarioModel& loaded,
                                             const std::vector<std::string>& worker,
                                             const std::atomic<bool>& stop,

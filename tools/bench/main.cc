@@ -1,4 +1,5 @@
-// Speed and memory of the program, beside its peers, measured in one run. See docs/performance.md.
+// Speed and memory of the program, beside its peers, measured in one run. See
+// docs/internals/performance.md.
 
 #include <fmt/core.h>
 

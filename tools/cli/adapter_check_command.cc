@@ -228,7 +228,7 @@ Command adapter_check_command() {
   command
       .option("--request-limit", options->request_limit_s,
               "Longest time of a request, in seconds of wall time")
-      .details("Default: as the scenario says, or docs/simulator_protocol.md.")
+      .details("Default: as the scenario says, or docs/reference/protocol.md.")
       .check(FiniteNumber{0.01, 1e5});
   return command_of(std::move(command), options, run_adapter_check);
 }

@@ -160,8 +160,9 @@ int bisect(const BisectCommandOptions& options, Invocation& invocation) {
 
 Command bisect_command() {
   auto options = std::make_shared<BisectCommandOptions>();
-  OptionTable command("bisect",
-                      "Which revision changed a verdict, or a case of a suite? (docs/history.md)");
+  OptionTable command(
+      "bisect",
+      "Which revision changed a verdict, or a case of a suite? (docs/reference/suites.md)");
   command.footer(
       "Examples:\n"
       "  parallax bisect v1.2 HEAD -- scenarios/kitchen/plan2.yaml\n"

@@ -79,7 +79,8 @@ Command calibrate_command() {
       "  parallax calibrate\n"
       "  parallax calibrate --criterion clean-runs --confidence 0.9 --epsilon 0.2\n"
       "  parallax calibrate --simulator crash-first --protocol-loops 100 --json\n"
-      "The tables of docs/statistics.md are from the first one. Its second part writes much: with\n"
+      "The tables of docs/internals/statistics.md are from the first one. Its second part writes "
+      "much: with\n"
       "TMPDIR in memory it takes half an hour, else hours.\n"
       "Exit codes: 0 each criterion errs as rarely as it says, 1 one does not, 4 interrupted.");
   std::vector<std::string> criteria;

@@ -153,7 +153,7 @@ void add_common_options(OptionTable& table, CommonOptions& options) {
   table.option("--memory-limit", options.memory_limit_mb, "End the run above this many MB")
       .check(WholeNumber{16, 10'000'000});
   table.flag("--allow-outside", options.allow_outside,
-             "Let files name files outside their folder (docs/trust.md)");
+             "Let files name files outside their folder (docs/reference/trust.md)");
   table
       .option("--footprint", options.footprint,
               "Write which files were read, and how much memory was used, as JSON")

@@ -101,15 +101,16 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
   }
   if (options.emit == "cnf" && compilation->plan && !compilation->plan->gaps.empty()) {
     const auto& gap = compilation->plan->gaps.front();
-    sink.error(codes::kUsage, gap.source,
-               gap.kind == compiler::GapKind::kOrder
-                   ? fmt::format("{} are not explored, which a compiled model does not tell: what "
-                                 "is claimed of it would claim too much; --par=interleave explores "
-                                 "the orders of branches",
-                                 gap.text)
-                   : fmt::format("{}: approximated, which a compiled model does not tell: what is "
-                                 "claimed of it would claim too much; see docs/plan_language.md",
-                                 gap.text));
+    sink.error(
+        codes::kUsage, gap.source,
+        gap.kind == compiler::GapKind::kOrder
+            ? fmt::format("{} are not explored, which a compiled model does not tell: what "
+                          "is claimed of it would claim too much; --par=interleave explores "
+                          "the orders of branches",
+                          gap.text)
+            : fmt::format("{}: approximated, which a compiled model does not tell: what is "
+                          "claimed of it would claim too much; see docs/reference/plan_language.md",
+                          gap.text));
     return 0;
   }
   if (options.emit == "cnf") tell_reservations(*compilation, invocation);

@@ -3,7 +3,8 @@
 namespace parallax::tools {
 namespace {
 
-/// docs/diagnostics.md: the registry as a table, one section for each hundred codes' letter.
+/// docs/reference/diagnostics.md: the registry as a table, one section for each hundred codes'
+/// letter.
 std::string registry_page() {
   std::string out =
       "# Diagnostics\n\n"

@@ -456,7 +456,8 @@ Command diff_command() {
       "  parallax diff --gate rules.yaml old.e new.e --markdown gate.md\n"
       "  parallax diff --gate rules.yaml ../base .\n"
       "  parallax diff --gate rules.yaml main HEAD cases\n"
-      "Exit code 1 if there is a difference, 0 if there is none. docs/git.md shows how git uses "
+      "Exit code 1 if there is a difference, 0 if there is none. docs/guide/regression.md shows "
+      "how git uses "
       "it.");
   command
       .option("old", options->old_path,

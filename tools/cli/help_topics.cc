@@ -14,26 +14,27 @@ constexpr HelpTopic kTopics[] = {
      "    130  interrupted (SIGINT), 143 terminated (SIGTERM)\n"
      "The help of each command says what 0, 1 and 4 mean there.\n"},
     {"files", "Which files there are, and which command reads them",
-     "    *.e            a model: what happens and what it changes (docs/language.md)\n"
-     "    *.lisp         a plan (docs/plan_language.md)\n"
+     "    *.e            a model: what happens and what it changes "
+     "(docs/reference/model_language.md)\n"
+     "    *.lisp         a plan (docs/reference/plan_language.md)\n"
      "    *.bind         what the plan's designators mean in the model\n"
      "    *.yaml         a scenario, which ties model, plan and world together\n"
-     "                   (docs/scenario_format.md); its world; a suite (docs/suite_format.md)\n"
-     "    *.dec.cnf      a compiled model (docs/artifact_format.md)\n"
-     "    *.itf.json     traces, as are *.jsonl (docs/trace_formats.md)\n"
+     "                   (docs/reference/scenario.md); its world; a suite "
+     "(docs/reference/suites.md)\n"
+     "    *.dec.cnf      a compiled model (docs/reference/formats.md)\n"
+     "    *.itf.json     traces, as are *.jsonl (docs/reference/formats.md)\n"
      "    *.sdf, *.urdf  worlds and robots of other programs, as are files in MJCF (*.xml;\n"
-     "                   docs/import.md)\n"
+     "                   docs/guide/worlds.md)\n"
      "A run leaves a folder, out/NAME unless --out says otherwise:\n"
-     "    journal.ndjson            each simulation, a line (docs/journal_format.md)\n"
+     "    journal.ndjson            each simulation, a line (docs/reference/formats.md)\n"
      "    report.txt, report.json   the whole account\n"
-     "    recordings/               what moved (docs/recording.md)\n"
+     "    recordings/               what moved (docs/reference/formats.md)\n"
      "`replay`, `report`, `draw`, `explain`, `confirm`, `coverage` and `repair` read it.\n"},
     {"output", "What is printed where, colours, and forms for programs",
      "Results are on standard output, messages on standard error. --json prints exactly one "
      "document;\n"
-     "--diagnostics=json and =sarif print messages for programs (docs/editor.md). --quiet leaves "
-     "out\n"
-     "progress, remarks and warnings.\n"
+     "--diagnostics=json and =sarif print messages for programs (docs/guide/models.md).\n"
+     "--quiet leaves out progress, remarks and warnings.\n"
      "Colours are used on terminals, unless --color or the environment variable NO_COLOR says\n"
      "otherwise.\n"},
     {"seeds", "What is random, and how it is repeated",
@@ -44,7 +45,7 @@ constexpr HelpTopic kTopics[] = {
      "bytes, but for what stands in a field called `timing`.\n"
      "Physics is computed in floating point: on one machine it is the same to the last bit, which\n"
      "`parallax replay` checks; on another machine its last digits may differ "
-     "(docs/physics.md).\n"},
+     "(docs/internals/physics.md).\n"},
     {"trust", "What a stranger's files can do",
      "A file may name files of its own folder, or of the nearest one above that holds a\n"
      "`.parallax-root`, and no others; --allow-outside lifts that.\n"
@@ -54,7 +55,7 @@ constexpr HelpTopic kTopics[] = {
      "given;\n"
      "all others only with --allow-commands, if at all. Before you run a stranger's scenario, look "
      "for `command:` in it\n"
-     "(docs/trust.md).\n"},
+     "(docs/reference/trust.md).\n"},
     {"limits", "How a command is kept from taking too long or too much",
      "--time-limit and --memory-limit end any command, with exit code 4 unless it had its answer. "
      "What\n"

@@ -22,7 +22,7 @@ void add_launcher_options(OptionTable& command, LauncherOptions& options) {
   const UnderHeading heading(command, "Workers on other machines");
   command
       .option("--launcher", options.launcher,
-              "Prefix for worker commands: 'srun -n1 -c1', 'ssh lab3' (docs/cluster.md)")
+              "Prefix for worker commands: 'srun -n1 -c1', 'ssh lab3' (docs/guide/clusters.md)")
       .details("--jobs says how many workers are started.")
       .named_value("COMMAND");
   command

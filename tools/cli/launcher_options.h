@@ -12,7 +12,7 @@
 
 namespace parallax::tools {
 
-/// Workers on other machines: docs/cluster.md.
+/// Workers on other machines: docs/guide/clusters.md.
 struct LauncherOptions {
   std::string launcher, hosts;
   double start_s = 120.0, silence_s = 30.0;

@@ -414,8 +414,9 @@ int run_ledger(const LedgerOptions& options, Invocation& invocation) {
 
 Command ledger_command() {
   auto options = std::make_shared<LedgerOptions>();
-  OptionTable command("ledger",
-                      "The known discrepancies of a project in one reviewed file (docs/ledger.md)");
+  OptionTable command(
+      "ledger",
+      "The known discrepancies of a project in one reviewed file (docs/reference/suites.md)");
   command.footer(
       "Examples:\n"
       "  parallax ledger add out/edge                      what the run shows and nobody knew\n"

@@ -47,7 +47,7 @@ void add_mutate_options(OptionTable& command, MutateOptions& options) {
   command
       .flag("--mutate", options.mutate,
             "Mutation testing: which mistakes in its models and plans the suite does not notice")
-      .details("docs/mutation.md explains it.");
+      .details("docs/guide/regression.md explains it.");
   command
       .option("--at-most", options.at_most,
               "With --mutate: so many mutants, evenly spread over all of them")

@@ -269,7 +269,7 @@ Command prove_command() {
       .check(WholeNumber{0, 1'000'000});
   command
       .option("--assume", options->assume,
-              "NAME=VALUE: a bound that the proof assumes before an action (docs/prove.md)")
+              "NAME=VALUE: a bound that the proof assumes before an action (docs/guide/rare.md)")
       .details(
           "Names: drift, drift-rad, sliding, sliding-rad, goal, goal-rad, parked, held, held-rad, "
           "held-height, lean [m, rad], or JOINT.q=LOW:HIGH.")

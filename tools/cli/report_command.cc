@@ -252,7 +252,7 @@ Command report_command() {
       .file();
   command
       .option("--ledger", options->ledger,
-              "Say what this file of known discrepancies has of the run (docs/ledger.md)")
+              "Say what this file of known discrepancies has of the run (docs/reference/suites.md)")
       .file({"yaml"});
   command
       .option(

@@ -91,7 +91,7 @@ base::Status OpinionOfRun::choose_command() {
   simulator = harness::SimulatorSpec();
   simulator.source = other_.scenario.actions_source;
   simulator.command = std::move(split.words);
-  // Who types a command permits it (docs/trust.md).
+  // Who types a command permits it (docs/reference/trust.md).
   make_ = simulator_factory(other_, {}, stop_flag(), {"/proc/self/exe", "supervise", "--"});
   return base::Unit{};
 }

@@ -35,7 +35,9 @@ Option& add_model_options(OptionTable& command, ModelOptions& options) {
   command
       .option("--until", options.until,
               "Formula over `time`, or a temporal one: traces end where it holds first")
-      .details("Counted from timepoint 0 on; docs/temporal.md has the temporal operators.")
+      .details(
+          "Counted from timepoint 0 on; docs/reference/model_language.md has the temporal "
+          "operators.")
       .list(ListForm::kOneEachTime);
   return models;
 }

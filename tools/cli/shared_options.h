@@ -44,7 +44,7 @@ void add_listing_options(OptionTable& command, ListingOptions& options);
 void add_certify_option(OptionTable& command, CertifyOption& option);
 void add_replay_options(OptionTable& command, ReplayTracesOptions& options);
 
-/// May a command that a scenario names be started? docs/trust.md.
+/// May a command that a scenario names be started? docs/reference/trust.md.
 struct CommandPermission {
   bool allow = false;   // --allow-commands
   bool refuse = false;  // --no-commands

@@ -354,7 +354,7 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
 Command suite_command() {
   auto options = std::make_shared<SuiteOptions>();
   OptionTable command(
-      "suite", "Run every scenario and model expectation below a path (docs/suite_format.md)");
+      "suite", "Run every scenario and model expectation below a path (docs/reference/suites.md)");
   command.footer(
       "Examples:\n"
       "  parallax suite scenarios --jobs 2\n"
@@ -410,13 +410,14 @@ Command suite_command() {
       .file({"yaml"});
   command
       .option("--ledger", options->ledger,
-              "Known discrepancies: one that it does not know fails its case (docs/ledger.md)")
+              "Known discrepancies: one that it does not know fails its case "
+              "(docs/reference/suites.md)")
       .file({"yaml"});
   command.heading("History");
   command
       .option("--history", options->history,
               "Append outcomes, rates and times to this file, and say what changed "
-              "(docs/history.md)")
+              "(docs/reference/suites.md)")
       .file();
   command
       .option("--revision", options->revision,

@@ -377,7 +377,7 @@ Command verify_command() {
       "The property is a formula over `time`, the last timepoint, which may also look back; or it\n"
       "speaks of whole traces, with always, eventually, next, weak_next, until, historically, "
       "once,\n"
-      "previously and since (docs/temporal.md). The answer\n"
+      "previously and since (docs/reference/model_language.md). The answer\n"
       "is one shortest trace (exit code 1), or that it holds up to the horizon (0), with a proof "
       "that\n"
       "is checked by independent means and kept under --certify. A scenario's own constraints play "
@@ -393,7 +393,7 @@ Command verify_command() {
   command
       .option("--ledger", options->ledger,
               "Also say which known discrepancies of this file the answer rests on "
-              "(docs/ledger.md)")
+              "(docs/reference/suites.md)")
       .file({"yaml"});
   command.flag("--check", options->check,
                "Evaluate the model on the trace by independent means; exit 5 if it differs");

@@ -26,13 +26,13 @@ install(FILES ${manual}/_parallax COMPONENT program
 install(FILES ${manual}/parallax.fish COMPONENT program
   DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 
-# The README names pages as docs/NAME.md, and so do messages.
+# The README names pages as docs/SHELF/NAME.md, and so do messages.
 install(FILES ${PROJECT_SOURCE_DIR}/README.md COMPONENT program
   DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/parallax)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs COMPONENT program
   DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/parallax
-  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "library" EXCLUDE)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/library COMPONENT development
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/guide/library COMPONENT development
   DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libparallax-dev/examples)
 # Installed apart from the documentation, which small installations leave out.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios ${PROJECT_SOURCE_DIR}/tools/editor

@@ -1,4 +1,4 @@
-# Debian packages `parallax` and `libparallax-dev`, made by tools/package and described in docs/packages.md.
+# Debian packages `parallax` and `libparallax-dev`, made by tools/package and described in docs/guide/installing.md.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME parallax)
 set(CPACK_PACKAGE_VENDOR "The parallax authors")
@@ -61,9 +61,9 @@ foreach(package parallax libparallax-dev)
     install(FILES ${PROJECT_BINARY_DIR}/generated/copyright
       DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
     # What the library's headers are for, and the program that shows it.
-    install(FILES ${PROJECT_SOURCE_DIR}/docs/library.md
+    install(FILES ${PROJECT_SOURCE_DIR}/docs/guide/library/README.md RENAME library.md
       DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/library/
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/guide/library/
       DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package}/examples COMPONENT ${component})
   endif()
   install(CODE "

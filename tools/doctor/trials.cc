@@ -169,14 +169,14 @@ CheckUp try_git(const TrialRunner& runner) {
 }
 
 CheckUp try_python(const TrialRunner& runner) {
-  auto check =
-      try_program({.name = "python3",
-                   .remedy = "needed by simulators in Python (docs/adapters.md), from 3.8 on",
-                   .package = "python3"},
-                  runner,
-                  {"python3", "-c",
-                   "import json, sys; assert sys.version_info >= (3, 8); "
-                   "print('Python', sys.version.split()[0])"});
+  auto check = try_program(
+      {.name = "python3",
+       .remedy = "needed by simulators in Python (docs/guide/simulators.md), from 3.8 on",
+       .package = "python3"},
+      runner,
+      {"python3", "-c",
+       "import json, sys; assert sys.version_info >= (3, 8); "
+       "print('Python', sys.version.split()[0])"});
   return check;
 }
 

@@ -119,7 +119,7 @@ std::string slug(std::string_view text) {
 
 std::string new_ledger_text() {
   return "# Discrepancies between model and world that are known, and what was decided about\n"
-         "# them: docs/ledger.md. Edit it by hand, or with `parallax ledger`.\n"
+         "# them: docs/reference/suites.md. Edit it by hand, or with `parallax ledger`.\n"
          "discrepancies:\n";
 }
 

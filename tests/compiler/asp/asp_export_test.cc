@@ -150,7 +150,7 @@ TEST_CASE("a trajectory fixes another fluent until its own is terminated") {
 }
 
 TEST_CASE("the models of the language guide have as many answer sets as it says traces") {
-  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/language.md");
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/reference/model_language.md");
   const std::string guide{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   const std::string mark = "<!-- traces: ";
   int models = 0;

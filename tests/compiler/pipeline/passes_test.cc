@@ -47,15 +47,17 @@ bool has(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("docs/design.md lists the passes as they run") {
-  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/design.md");
+TEST_CASE("docs/internals/architecture.md lists the passes as they run") {
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/internals/architecture.md");
   std::ostringstream document;
   document << in.rdbuf();
   std::string list;
   for (const auto& pass : compiler::compile_passes()) {
     list += fmt::format("    {:<18}{}\n", pass.name, pass.description);
   }
-  CHECK_MESSAGE(has(document.str(), '\n' + list + '\n'), "docs/design.md should say:\n" << list);
+  CHECK_MESSAGE(has(document.str(), '\n' + list + '\n'),
+                "docs/internals/architecture.md should say:\n"
+                    << list);
 }
 
 TEST_CASE("every pass is logged, in the order of the table, under a name of its own") {

@@ -68,7 +68,7 @@ bool is_prefix(const Valuation& shorter, const Valuation& longer) {
          std::equal(shorter.happens.begin(), shorter.happens.end() - 1, longer.happens.begin());
 }
 
-/// Does the trace fulfil the formula as docs/temporal.md says?
+/// Does the trace fulfil the formula as docs/reference/model_language.md says?
 bool fulfils(const TemporalFormula& formula, const Valuation& trace) {
   const int last = static_cast<int>(trace.holds.size()) - 1;
   return formula.value(trace, formula.looks_on() ? 0 : last).value_or(false);

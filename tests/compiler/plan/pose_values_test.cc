@@ -49,7 +49,7 @@ constexpr const char* kTurned =
     "(cl-transforms:axis-angle->quaternion (cl-transforms:make-3d-vector 0 0 2) (/ pi 2))";
 
 TEST_CASE("poses: the page names every function") {
-  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/plan_language.md");
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/reference/plan_language.md");
   const std::string page{std::istreambuf_iterator<char>(in), {}};
   for (const auto table :
        {pose_part_builtins(), transform_builtins(), frame_builtins(), robot_builtins()}) {

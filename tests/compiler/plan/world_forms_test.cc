@@ -1,5 +1,5 @@
-// Forms that describe the world around the robot do nothing, and docs/plan_language.md lists all of
-// them.
+// Forms that describe the world around the robot do nothing, and docs/reference/plan_language.md
+// lists all of them.
 #include "compiler/interpreter/world_forms.h"
 
 #include <doctest/doctest.h>
@@ -15,7 +15,7 @@ namespace {
 
 /// The words in backquotes of the row of the table that begins with this cell.
 std::set<std::string> listed(const std::string& row) {
-  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/plan_language.md");
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/reference/plan_language.md");
   std::set<std::string> out;
   for (std::string line; std::getline(in, line);) {
     if (!line.starts_with("| " + row + " |")) continue;

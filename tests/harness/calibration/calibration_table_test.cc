@@ -165,7 +165,7 @@ TEST_CASE("initial states of weights err as often as one, and the weights are he
 }
 
 TEST_CASE("the table in the documentation is what the command computes") {
-  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/statistics.md");
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/internals/statistics.md");
   std::ostringstream text;
   text << in.rdbuf();
   // One row of it, which is quick to compute.

@@ -137,9 +137,9 @@ TEST_CASE("a run that ended with losses is continued behind them, and none of th
 TEST_CASE("a simulator that crashes where it should fail earns no more false claims than stated") {
   // A run fails with probability eps, by its own randomness, and then always crashes. A claim that
   // it fails less often is false. With confidence C it may be made in 2 (1 - C) = 20 % of the
-  // campaigns; worked out exactly (docs/statistics.md) it is made in 9.7 %, and in 88 % if losses
-  // were repeated. More than 40 false claims in 200 campaigns have probability 4e-6 in a correct
-  // program; the generators are seeded, so the test gives the same result every time.
+  // campaigns; worked out exactly (docs/internals/statistics.md) it is made in 9.7 %, and in 88 %
+  // if losses were repeated. More than 40 false claims in 200 campaigns have probability 4e-6 in a
+  // correct program; the generators are seeded, so the test gives the same result every time.
   constexpr int kCampaigns = 200;
   constexpr double kConfidence = 0.9, kEpsilon = 0.2;
   constexpr std::int64_t kMaxRuns = 40;

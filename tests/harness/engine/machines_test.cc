@@ -1,4 +1,5 @@
-// The machines of docs/physics.md in every engine: their error at one step, and at a quarter.
+// The machines of docs/internals/physics.md in every engine: their error at one step, and at a
+// quarter.
 
 #include "tools/bench/engines/machines.h"
 

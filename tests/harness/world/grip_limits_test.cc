@@ -1,5 +1,5 @@
-// The grips of which `check` warns are those that slipped in the table of docs/physics.md, which a
-// program made by simulating them.
+// The grips of which `check` warns are those that slipped in the table of
+// docs/internals/physics.md, which a program made by simulating them.
 
 #include "harness/world/grip_limits.h"
 
@@ -64,7 +64,7 @@ WorldSpec world_with(const std::string& load, EngineKind engine, double step_s, 
 }
 
 TEST_CASE("who slips in the table of the documentation is warned of, and nobody else") {
-  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/physics.md");
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/internals/physics.md");
   REQUIRE(in);
   const std::regex row(
       R"(\| (box|cylinder|hull|mesh|ring) \| ([0-9.]+) ms \| (ode|mujoco) \| [^|]* \| \**(\d+) of (\d+)[^|]* \| \**(\d+) of .*)");

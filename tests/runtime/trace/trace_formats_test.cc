@@ -60,7 +60,7 @@ std::string atom_of(const std::string& symbol, const Names& arguments) {
   return out + ')';
 }
 
-/// The trace that an ITF text tells, by the mapping that docs/trace_formats.md describes.
+/// The trace that an ITF text tells, by the mapping that docs/reference/formats.md describes.
 Trace trace_of(const ItfFile& file) {
   NamedTrace out(file.meta.at("trace").get<std::int64_t>(), file.states.size());
   std::set<std::string> predicates;

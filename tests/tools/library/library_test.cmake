@@ -1,12 +1,12 @@
 # cmake -DBUILD=... -DSOURCE=... -DWORK=... -P library_test.cmake
-# Installs the build into a prefix of its own, builds the example of docs/library against it as
+# Installs the build into a prefix of its own, builds the example of docs/guide/library against it as
 # somebody else would, runs it and compares what it prints.
 file(REMOVE_RECURSE ${WORK})
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY OUTPUT_VARIABLE out ERROR_VARIABLE out)
 endfunction()
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -S ${SOURCE}/docs/library -B ${WORK}/build -DCMAKE_BUILD_TYPE=Debug
+run(${CMAKE_COMMAND} -S ${SOURCE}/docs/guide/library -B ${WORK}/build -DCMAKE_BUILD_TYPE=Debug
     -DCMAKE_PREFIX_PATH=${WORK}/prefix)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 execute_process(COMMAND ${WORK}/build/example scenarios/two_regions/edge.yaml

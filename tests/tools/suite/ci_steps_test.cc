@@ -1,6 +1,6 @@
-// The workflows of docs/ci.md, step by step, in a scratch repository. The parts of a service are
-// simulated: a checkout is a clone, an artifact a copy. Steps called `install` are not run, as the
-// program is there.
+// The workflows of docs/guide/regression.md, step by step, in a scratch repository. The parts of a
+// service are simulated: a checkout is a clone, an artifact a copy. Steps called `install` are not
+// run, as the program is there.
 
 #include <doctest/doctest.h>
 #include <yaml-cpp/yaml.h>
@@ -26,7 +26,7 @@ bool holds(const std::string& text, const std::string& part) {
 
 /// The blocks of the page, by the file that their first line names.
 std::map<std::string, std::string> files_of_page() {
-  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/ci.md");
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/guide/regression.md");
   std::map<std::string, std::string> out;
   std::string line, block;
   const auto end_block = [&] {

@@ -1,4 +1,4 @@
-// The commands and files of docs/suite_format.md and docs/history.md, played in a repository with
+// The commands and files of docs/reference/suites.md, played in a repository with
 // scenarios/two_regions: each does what the page shows.
 
 #include <doctest/doctest.h>
@@ -109,8 +109,7 @@ void check_bisect(const GitFixture& cli, const Example& bisect) {
 
 TEST_CASE("the suites of the page") {
   const Repository cli;
-  const auto examples = examples_of("suite_format.md");
-  CHECK(examples.size() == 4);
+  const auto examples = examples_of("reference/suites.md");
   const auto& first = find(examples, "--jobs");
   const auto suite = cli.play(first);
   CHECK(suite.code == 0);
@@ -140,7 +139,7 @@ TEST_CASE("the manifest and the quarantine of the page") {
   cli.write("m/lamp.e",
             "range time 0 1\nfluent On()\nevent Press()\n[time] Initiates(Press(),On(),time).\n");
   bool has_manifest = false, has_quarantine = false;
-  for (const auto& block : blocks_of("suite_format.md")) {
+  for (const auto& block : blocks_of("reference/suites.md")) {
     if (block.starts_with("defaults:")) {
       cli.write("m/suite.yaml", block);
       const auto result = cli.parallax({"suite", "m/suite.yaml"});
@@ -161,8 +160,7 @@ TEST_CASE("the manifest and the quarantine of the page") {
 
 TEST_CASE("the history of the page, and its search for a revision") {
   const Repository cli;
-  const auto examples = examples_of("history.md");
-  CHECK(examples.size() == 3);
+  const auto examples = examples_of("reference/suites.md");
   cli.commit("first");
   cli.git({"tag", "v1.2"});
   const auto& suite = find(examples, "--history");
@@ -202,7 +200,7 @@ TEST_CASE("the search of the page for the revision that broke a case") {
   cli.commit("Open without a key");
   cli.write("cases/lock.e", cli.read("cases/lock.e") + "; The end.\n");
   cli.commit("Say that it ends");
-  check_bisect(cli, find(examples_of("history.md"), "cases/suite.yaml:lock_opens"));
+  check_bisect(cli, find(examples_of("reference/suites.md"), "cases/suite.yaml:lock_opens"));
 }
 
 }  // namespace

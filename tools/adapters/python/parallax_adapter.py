@@ -1,7 +1,7 @@
 """Makes a simulator that is written in Python one that `parallax` can run.
 
 One file, standard library only (Python 3.8 or later): copy it beside your program.
-docs/adapters.md tells the story, docs/simulator_protocol.md what goes over the wire.
+docs/guide/simulators.md tells the story, docs/reference/protocol.md what goes over the wire.
 
     from parallax_adapter import Adapter, Failed
 
@@ -211,7 +211,7 @@ class Adapter:
 
     def on_poses(self, bodies, grippers=()):
         """function() -> {body: (x, y, z) or (x, y, z, qw, qx, qy, qz)}, or a pair of that and
-        {body: gripper} for what is held. `bodies` as docs/recording.md has them."""
+        {body: gripper} for what is held. `bodies` as docs/reference/formats.md has them."""
 
         def declare(function):
             self._poses = function

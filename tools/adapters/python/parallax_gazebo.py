@@ -1,6 +1,6 @@
 """Makes a world in Gazebo, or in another simulator that offers the ROS 2 package simulation_interfaces, one
 that `parallax` can run: entities that are placed and looked at, action servers (those of Nav2, say) as actions.
-Needs rclpy and simulation_interfaces, and parallax_adapter.py beside it. docs/adapters.md tells how.
+Needs rclpy and simulation_interfaces, and parallax_adapter.py beside it. docs/guide/simulators.md tells how.
 
 NOT RUN AGAINST THE REAL GAZEBO OR ROS 2: written from their documentation, and tested against a stub.
 

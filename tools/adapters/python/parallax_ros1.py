@@ -1,6 +1,6 @@
 """Makes a robot that speaks ROS 1 one that `parallax` can run: actionlib clients for its actions,
 topics and frames of tf for what is observed. Needs rospy and actionlib (Debian: python3-rospy,
-python3-actionlib; for frames python3-tf2-ros), and parallax_adapter.py beside it. docs/adapters.md tells how.
+python3-actionlib; for frames python3-tf2-ros), and parallax_adapter.py beside it. docs/guide/simulators.md tells how.
 
     from parallax_ros1 import RosAdapter
 

@@ -1,6 +1,6 @@
 """Makes a Webots world one that `parallax` can run: nodes that are placed and looked at, joints, motors
 and sensors, through the Supervisor of Webots' own Python module `controller` (R2022a or later). Needs
-parallax_adapter.py beside it. docs/adapters.md tells how.
+parallax_adapter.py beside it. docs/guide/simulators.md tells how.
 
 NOT RUN AGAINST THE REAL WEBOTS: written from its documentation, and tested against a stub of the API.
 

@@ -1,5 +1,6 @@
-// parallax_engine_table [SCENARIO...]: errors of the machines of docs/physics.md, by engine and
-// step; for scenarios, the speed and memory of each engine in simulating their first trace.
+// parallax_engine_table [SCENARIO...]: errors of the machines of docs/internals/physics.md, by
+// engine and step; for scenarios, the speed and memory of each engine in simulating their first
+// trace.
 
 #include <fmt/core.h>
 #include <sys/resource.h>

@@ -8,8 +8,9 @@
 namespace parallax::tools {
 
 // Families of models whose size is a parameter and whose number of traces is known. Each function
-// returns a complete text in the language of `docs/language.md`; the same parameters give the same
-// text. Parameters are positive unless said otherwise and at most kMaxFamilyParameter.
+// returns a complete text in the language of `docs/reference/model_language.md`; the same
+// parameters give the same text. Parameters are positive unless said otherwise and at most
+// kMaxFamilyParameter.
 
 inline constexpr int kMaxFamilyParameter = 1'000'000;
 

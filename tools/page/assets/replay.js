@@ -1,6 +1,6 @@
 "use strict";
 // Recorded motion in three dimensions, with three.js: one simulation, or one beside another in lock
-// step of their events. docs/recording.md has the format of the frames.
+// step of their events. docs/reference/formats.md has the format of the frames.
 // It begins when the page has loaded: what is read first is not to wait for the drawing.
 addEventListener("load", () => setTimeout(() => {
   const byId = (id) => document.getElementById(id);

@@ -1,7 +1,7 @@
 #pragma once
 
 // Worlds and what moves in them: the built-in engine, or any program that speaks the protocol of
-// docs/simulator_protocol.md.
+// docs/reference/protocol.md.
 //
 //     parallax::OdeSimulator simulator(scenario.world);
 //     simulator.reset({{"box.x", 1.1}}, 1);
