@@ -8,7 +8,7 @@
 
 namespace parallax::api {
 
-/// What was reported so far, in the order of the texts.
+/// All that was reported so far, in the order of the texts.
 std::vector<Message> messages_of(const tools::Context& context);
 
 /// Throws Failure with what was reported.
