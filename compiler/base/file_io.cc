@@ -11,6 +11,7 @@
 #include "compiler/base/codes/files.h"
 #include "compiler/base/codes/texts.h"
 #include "compiler/base/descriptor.h"
+#include "compiler/base/open_texts.h"
 #include "compiler/base/path_gate.h"
 #include "compiler/base/utf8.h"
 
@@ -47,6 +48,10 @@ bool write_all(int fd, std::string_view text) {
 
 Result<std::string> read_file(const std::filesystem::path& path, DiagnosticSink& sink,
                               std::size_t limit) {
+  if (const auto* edited = ReadOpenTexts::find(path)) {
+    if (edited->size() > limit) return sink.error_about(codes::kFileTooLarge, path.string(), limit);
+    return *edited;
+  }
   struct ::stat status {};
   if (::stat(path.c_str(), &status) != 0) {
     const auto code =

@@ -1,21 +1,14 @@
 #include <algorithm>
 #include <memory>
 
-#include "compiler/artifact/artifact_writer.h"
 #include "compiler/base/codes/files.h"
-#include "tools/app/dead_retries.h"
+#include "tools/app/file_check.h"
 #include "tools/app/model_options.h"
-#include "tools/app/scenario_check.h"
-#include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
 #include "tools/cli/shared_options.h"
 
 namespace parallax::tools {
 namespace {
-
-bool is_scenario(const std::string& path) {
-  return path.ends_with(".yaml") || path.ends_with(".yml");
-}
 
 struct CheckCommandOptions {
   ModelOptions model;
@@ -40,34 +33,10 @@ bool mute_allowed(const std::vector<std::string>& allow, Invocation& invocation)
 }
 
 int check(const CheckCommandOptions& check_options, Invocation& invocation) {
-  const auto& options = check_options.model;
   if (!mute_allowed(check_options.allow, invocation)) return 0;
-  std::vector<std::string> models;
-  for (const auto& path : options.models) {
-    // Reports into the sink; a result says only that there was nothing to report.
-    if (is_scenario(path)) {
-      const auto loaded =
-          load_scenario_model(path, invocation, {.as_run = true, .lint = !check_options.no_lint});
-      if (!loaded) continue;
-      report_dead_retries(loaded->compilation, invocation);
-      report_dead_handlers(loaded->compilation, invocation);
-      check_before_run(*loaded, invocation);
-    } else if (compiler::is_artifact_name(path)) {
-      (void)compiler::load_artifact(path, invocation.files(), invocation.sink());
-    } else {
-      models.push_back(path);
-    }
-  }
-  if (!models.empty()) {
-    auto input_options = options;
-    input_options.models = models;
-    input_options.lint = !check_options.no_lint;
-    const auto compilation = compile_models(input_options, invocation);
-    if (compilation) {
-      report_dead_retries(*compilation, invocation);
-      report_dead_handlers(*compilation, invocation);
-    }
-  }
+  auto options = check_options.model;
+  options.lint = !check_options.no_lint;
+  check_files(options, invocation);
   if (invocation.sink().has_errors()) return 0;
   if (invocation.options().json) {
     invocation.document("{\"status\":\"ok\"}\n");

@@ -100,6 +100,7 @@ Command traces_command();
 Command verify_command();
 Command diagnostics_command();
 Command doctor_command();
+Command lsp_command();
 Command export_command();
 Command fmt_command();
 Command learn_command();

@@ -80,7 +80,7 @@ std::vector<Command> all_commands(const Program& program) {
       all.push_back(std::move(command));
     }
   };
-  add("Begin", {new_command(), check_command(), fmt_command()});
+  add("Begin", {new_command(), check_command(), fmt_command(), lsp_command()});
   add("Find where model and world part",
       {run_command(), rates_command(), monitor_command(), prove_command(), suite_command()});
   add("Look into a run",

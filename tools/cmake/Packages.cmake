@@ -1,4 +1,5 @@
-# Debian packages `parallax` and `libparallax-dev`, made by tools/package and described in docs/guide/installing.md.
+# Debian packages `parallax`, `libparallax0.2` and `libparallax-dev`, made by tools/package and described in
+# docs/guide/installing.md.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME parallax)
 set(CPACK_PACKAGE_VENDOR "The parallax authors")
@@ -10,7 +11,7 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_OUTPUT_FILE_PREFIX ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_COMPONENTS_ALL program shared development)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
@@ -28,11 +29,25 @@ the traces that reach interesting states, replays each of them in a physics
 simulator from sampled start states, and reports the first place where
 prediction and physics disagree, or what can be claimed when they do not.")
 
+set(PARALLAX_SHARED_PACKAGE libparallax${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(CPACK_DEBIAN_SHARED_PACKAGE_NAME ${PARALLAX_SHARED_PACKAGE})
+set(CPACK_DEBIAN_SHARED_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_SHARED_PACKAGE_SHLIBDEPS ON)
+# Its ldconfig is run by dpkg's trigger.
+set(CPACK_DEBIAN_SHARED_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/generated/packages/triggers)
+file(WRITE ${PROJECT_BINARY_DIR}/generated/packages/triggers "activate-noawait ldconfig\n")
+# The program simulates built-in worlds for it.
+set(CPACK_DEBIAN_SHARED_PACKAGE_RECOMMENDS "parallax (= ${PROJECT_VERSION}-1)")
+set(CPACK_COMPONENT_SHARED_DESCRIPTION
+"library of parallax, shared
+Models, their traces and the loop that holds them against simulations, behind
+one small interface. Programs that use it are built with libparallax-dev.")
+
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libparallax-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # The packages that parallaxConfig.cmake looks for; scenarios with SDF need the module of the program.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libcadical-dev, libeigen3-dev, libfmt-dev, libgmp-dev, libode-dev, libyaml-cpp-dev, nlohmann-json3-dev")
+  "${PARALLAX_SHARED_PACKAGE} (= ${PROJECT_VERSION}-1), libcadical-dev, libeigen3-dev, libfmt-dev, libgmp-dev, libode-dev, libyaml-cpp-dev, nlohmann-json3-dev")
 if("PARALLAX_HAS_URDFDOM" IN_LIST readers)
   string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", liburdfdom-dev")
 endif()
@@ -53,9 +68,13 @@ file(CONFIGURE OUTPUT ${made}/changelog.Debian @ONLY CONTENT
 
  -- @PARALLAX_PACKAGE_CONTACT@  @PARALLAX_DEBIAN_DATE@
 ")
-foreach(package parallax libparallax-dev)
+foreach(package parallax libparallax-dev ${PARALLAX_SHARED_PACKAGE})
   if(package STREQUAL parallax)
     set(component program)
+  elseif(package STREQUAL PARALLAX_SHARED_PACKAGE)
+    set(component shared)
+    install(FILES ${PROJECT_BINARY_DIR}/generated/copyright
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
   else()
     set(component development)
     install(FILES ${PROJECT_BINARY_DIR}/generated/copyright

@@ -340,6 +340,37 @@ addEventListener("load", () => setTimeout(() => {
     camera.lookAt(at);
   };
 
+  const kThing = 4;  // what can be carried, among the kinds of bodies
+
+  /// How many of the things that are handled can be seen at the beginning and at the end, from one side.
+  const seenFrom = (azimuth) => {
+    const away = new THREE.Vector3(Math.cos(0.55) * Math.cos(azimuth), Math.cos(0.55) * Math.sin(azimuth), Math.sin(0.55));
+    const camera_W = look.at.clone().addScaledVector(away, look.far), ray = new THREE.Raycaster();
+    let seen = 0;
+    for (const play of plays) {
+      const bodies = play.spec.bodies;
+      for (const at of [0, play.end]) {
+        play.show(at);
+        play.scene.updateMatrixWorld();
+        const meshes = play.groups.flatMap((group) => group.children.flatMap((part) => part.children.filter((one) => one.isMesh)));
+        for (const i of play.moving.filter((body) => bodies[body].kind === kThing)) {
+          const thing_W = play.groups[i].getWorldPosition(new THREE.Vector3());
+          ray.set(camera_W, thing_W.sub(camera_W).normalize());
+          const first = ray.intersectObjects(meshes)[0];
+          if (first && first.object.parent.parent === play.groups[i]) ++seen;
+        }
+      }
+    }
+    return seen;
+  };
+
+  /// The side from which most things can be seen; the usual one where others show no more.
+  const openSide = () => {
+    const usual = -2.0, turns = [0, 0.7, -0.7, 1.4, -1.4, 2.1, -2.1, Math.PI];
+    const sides = turns.map((turn) => [usual + turn, seenFrom(usual + turn)]);
+    return sides.reduce((best, side) => side[1] > best[1] ? side : best)[0];
+  };
+
   const view = (name) => {
     const box = plays.reduce((all, play) => all.union(play.box), new THREE.Box3());
     const size = box.getSize(new THREE.Vector3());
@@ -347,7 +378,7 @@ addEventListener("load", () => setTimeout(() => {
     look.far = Math.max(size.x, size.y, 1.2) * (plays.length > 1 ? 1.45 : 1.15);
     if (name === "top") [look.azimuth, look.height] = [-Math.PI / 2, Math.PI / 2 - 0.001];
     else if (name === "front") [look.azimuth, look.height] = [-Math.PI / 2, 0.12];
-    else [look.azimuth, look.height] = [-2.0, 0.55];
+    else [look.azimuth, look.height] = [name === "world" ? openSide() : -2.0, 0.55];
     if (name === "robot") {
       const robot = plays[0].spec.bodies.findIndex((body) => body.moves && body.on === undefined && body.kind === 2);
       if (robot >= 0) {

@@ -1,0 +1,338 @@
+// The language server as an editor has it: a process and two pipes.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <random>
+#include <set>
+#include <string>
+
+#include "tests/tools/cli_fixture.h"
+#include "tests/tools/lsp/editor_client.h"
+
+namespace parallax::test {
+namespace {
+
+using Json = EditorClient::Json;
+
+struct Desk : CliFixture {
+  Desk() { editor.ask("initialize", {{"capabilities", Json::object()}}); }
+  std::string path(const std::string& name) const {
+    return std::filesystem::canonical(folder() / name).string();
+  }
+  /// What `check` says of a file that stands on disk: code, line, column from 1.
+  std::multiset<std::string> checked(const std::string& root, const std::string& about) const {
+    const auto ran = parallax({"check", path(root), "--json"});
+    const auto document = Json::parse(ran.out);
+    std::multiset<std::string> out;
+    for (const auto& one : document.value("diagnostics", Json::array())) {
+      if (!one.contains("path") || one["path"] != path(about)) continue;
+      out.insert(one["code"].get<std::string>() + " " + one["line"].dump() + ":" +
+                 one["column"].dump());
+    }
+    return out;
+  }
+  static std::multiset<std::string> told(const Json& diagnostics) {
+    std::multiset<std::string> out;
+    for (const auto& one : diagnostics) {
+      const auto& start = one["range"]["start"];
+      out.insert(one["code"].get<std::string>() + " " +
+                 std::to_string(start["line"].get<int>() + 1) + ":" +
+                 std::to_string(start["character"].get<int>() + 1));
+    }
+    return out;
+  }
+  Json at(const std::string& name, const std::string& word) const {
+    const auto text = read(name);
+    return {{"textDocument", {{"uri", uri(path(name))}}},
+            {"position", place_in(text, text.find(word) + 1)}};
+  }
+
+  EditorClient editor;
+};
+
+TEST_CASE("a misspelled name is told with its fix while it is typed, and the fix mends it") {
+  Desk desk;
+  const auto path = desk.path("domain.e");
+  auto text = desk.read("domain.e");
+  desk.editor.open(path, text);
+  CHECK(desk.editor.diagnostics(path, 1).empty());
+  const auto place = text.find("HoldsAt(Holding()") + 8;
+  desk.editor.edit(path, text, place, place + 7, "Holdng", 2);
+  text.replace(place, 7, "Holdng");
+  const auto wrong = desk.editor.diagnostics(path, 2);
+  REQUIRE(wrong.size() == 1);
+  CHECK(wrong[0]["code"] == "E2101");
+  CHECK(wrong[0]["range"]["start"] == place_in(text, place));
+  const auto actions =
+      desk.editor.ask("textDocument/codeAction", {{"textDocument", {{"uri", uri(path)}}},
+                                                  {"range", wrong[0]["range"]},
+                                                  {"context", {{"diagnostics", wrong}}}});
+  REQUIRE(actions.size() == 1);
+  const auto edit = actions[0]["edit"]["changes"][uri(path)][0];
+  CHECK(edit["newText"] == "Holding");
+  desk.editor.note(
+      "textDocument/didChange",
+      {{"textDocument", {{"uri", uri(path)}, {"version", 3}}},
+       {"contentChanges", Json::array({{{"range", edit["range"]}, {"text", edit["newText"]}}})}});
+  CHECK(desk.editor.diagnostics(path, 3).empty());
+}
+
+TEST_CASE("an error in a file is told there when another file is open that reads it") {
+  Desk desk;
+  desk.replace("domain.e", "Initiates(Go(region),RobotIn(region),time)",
+               "Initiates(Go(region),RobotAt(region),time)");
+  const auto scenario = desk.path("scenario.yaml");
+  desk.editor.open(scenario, desk.read("scenario.yaml"));
+  CHECK(desk.editor.diagnostics(scenario, 1).empty());
+  // It is not open, so it has no version.
+  const auto told = desk.editor.diagnostics(desk.path("domain.e"), -1);
+  REQUIRE(!told.empty());
+  CHECK(told[0]["code"] == "E2101");
+}
+
+TEST_CASE("hover, definition and references know every file of the scenario") {
+  Desk desk;
+  const auto path = desk.path("domain.e");
+  desk.editor.open(path, desk.read("domain.e"));
+  const auto at = desk.at("domain.e", "BoxIn(region)");
+  const auto hover =
+      desk.editor.ask("textDocument/hover", at)["contents"]["value"].get<std::string>();
+  CHECK(hover.find("fluent BoxIn(region)") != std::string::npos);
+  CHECK(hover.find("Initiates(Place(region),BoxIn(region),time)") != std::string::npos);
+  CHECK(desk.editor.ask("textDocument/hover", desk.at("domain.e", "Initiates"))["contents"]["value"]
+            .get<std::string>()
+            .find("`Initiates(event, fluent, time)`") == 0);
+  const auto definition = desk.editor.ask(
+      "textDocument/definition",
+      desk.at("domain.e", "HoldsAt(RobotIn(region1)") /* in HoldsAt: nothing of the model */);
+  CHECK(definition.is_null());
+  std::set<std::string> files;
+  for (const auto& place : desk.editor.ask("textDocument/references", at)) {
+    const auto text = place["uri"].get<std::string>();
+    files.insert(text.substr(text.rfind('/') + 1));
+  }
+  CHECK(files == std::set<std::string>{"common.yaml", "domain.e", "edge.yaml", "robot.bind",
+                                       "scenario.yaml", "start.e"});
+}
+
+/// Applies the edits of a rename to the files on disk.
+void apply_edits(const Desk& desk, const Json& changes) {
+  for (const auto& [where, edits] : changes.items()) {
+    const auto name = where.substr(where.rfind('/') + 1);
+    const auto text = desk.read(name);
+    std::vector<std::size_t> lines = {0};
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      if (text[i] == '\n') lines.push_back(i + 1);
+    }
+    auto renamed = text;
+    std::vector<Json> ordered(edits.begin(), edits.end());
+    for (auto edit = ordered.rbegin(); edit != ordered.rend(); ++edit) {
+      const auto offset = [&](const char* end) {
+        const auto& place = (*edit)["range"][end];
+        return lines[place["line"].get<std::size_t>()] + place["character"].get<std::size_t>();
+      };
+      renamed.replace(offset("start"), offset("end") - offset("start"),
+                      (*edit)["newText"].get<std::string>());
+    }
+    desk.write(name, renamed);
+  }
+}
+
+TEST_CASE("a renamed sort, constant, fluent and event give scenarios that say the same") {
+  for (const auto& [old, fresh] : {std::pair{"sort region", "place"},
+                                   {"region r1", "left"},
+                                   {"fluent BoxIn", "CrateIn"},
+                                   {"event PickUp", "Grasp"}}) {
+    Desk desk;
+    const auto before = desk.parallax({"traces", "scenario.yaml", "--json"}).out;
+    desk.editor.open(desk.path("domain.e"), desk.read("domain.e"));
+    const auto text = desk.read("domain.e");
+    const auto word = std::string(old).substr(std::string(old).find(' ') + 1);
+    auto at = desk.at("domain.e", old);
+    at["position"] = place_in(text, text.find(old) + std::string(old).find(' ') + 1);
+    at["newName"] = fresh;
+    const auto answer = desk.editor.ask("textDocument/rename", at);
+    REQUIRE(answer.contains("changes"));
+    apply_edits(desk, answer["changes"]);
+    for (const auto* scenario : {"scenario.yaml", "edge.yaml", "wrong_model.yaml"}) {
+      CAPTURE(fresh);
+      CHECK(desk.parallax({"check", scenario}).code == 0);
+    }
+    const auto count = [](const std::string& traces) { return Json::parse(traces)["list"].size(); };
+    CHECK(count(desk.parallax({"traces", "scenario.yaml", "--json"}).out) == count(before));
+    CHECK(desk.read("domain.e").find(word + "(") == std::string::npos);
+  }
+}
+
+TEST_CASE("a name that is taken, or is none, is refused and nothing changes") {
+  Desk desk;
+  desk.editor.open(desk.path("domain.e"), desk.read("domain.e"));
+  auto at = desk.at("domain.e", "BoxIn(region)");
+  for (const auto* name : {"Holding", "9x", "a b", ""}) {
+    at["newName"] = name;
+    const auto answer = desk.editor.ask("textDocument/rename", at);
+    CAPTURE(name);
+    CHECK(answer.value("code", 0) == -32803);
+  }
+}
+
+TEST_CASE("after any edits the messages are those of check on the same text") {
+  const bool is_deep = std::getenv("PARALLAX_DEEP") != nullptr;
+  const int rounds = is_deep ? 2000 : 40;
+  Desk desk;
+  const auto path = desk.path("domain.e");
+  auto text = desk.read("domain.e");
+  const auto original = text;
+  desk.editor.open(path, text);
+  std::mt19937 draws(7);
+  int with_errors = 0;
+  for (int version = 2; version < 2 + rounds; ++version) {
+    const auto begin = draws() % (text.size() + 1);
+    const auto end = std::min(text.size(), begin + draws() % 12);
+    const char* pieces[] = {"",  " ",  ".", "\n",        "region", "BoxIn(",
+                            ")", "; ", "!", "Holding()", "->",     "x"};
+    const std::string fresh = pieces[draws() % 12];
+    desk.editor.edit(path, text, begin, end, fresh, version);
+    text.replace(begin, end - begin, fresh);
+    const auto told = Desk::told(desk.editor.diagnostics(path, version));
+    desk.write("domain.e", text);
+    std::multiset<std::string> expected;
+    for (const auto* root : {"edge.yaml", "scenario.yaml"}) {
+      for (const auto& one : desk.checked(root, "domain.e")) {
+        if (!expected.contains(one)) expected.insert(one);
+      }
+    }
+    CAPTURE(version);
+    CHECK(told == expected);
+    with_errors += told.empty() ? 0 : 1;
+    if (version % 7 == 0) {
+      desk.editor.edit(path, text, 0, text.size(), original, version);
+      text = original;
+    }
+  }
+  CHECK(with_errors > rounds / 2);
+}
+
+TEST_CASE("a storm of edits and questions at any place ends in order") {
+  const bool is_deep = std::getenv("PARALLAX_DEEP") != nullptr;
+  const int rounds = is_deep ? 20'000 : 1'000;
+  Desk desk;
+  const auto path = desk.path("domain.e");
+  auto text = desk.read("domain.e");
+  desk.editor.open(path, text);
+  std::mt19937 draws(11);
+  const char* questions[] = {"textDocument/hover",
+                             "textDocument/definition",
+                             "textDocument/references",
+                             "textDocument/documentHighlight",
+                             "textDocument/prepareRename",
+                             "textDocument/completion",
+                             "textDocument/documentSymbol",
+                             "textDocument/formatting",
+                             "no/such"};
+  for (int version = 2; version < 2 + rounds; ++version) {
+    const auto begin = draws() % (text.size() + 1);
+    const auto end = std::min(text.size(), begin + draws() % 30);
+    std::string fresh;
+    for (auto left = draws() % 8; left > 0; --left)
+      fresh += static_cast<char>(draws() % 20 == 0 ? '\n' : ' ' + draws() % 95);
+    desk.editor.edit(path, text, begin, end, fresh, version);
+    text.replace(begin, end - begin, fresh);
+    if (text.size() > 6000 || text.size() < 200) {
+      const auto original = desk.read("domain.e");
+      desk.editor.edit(path, text, 0, text.size(), original, version);
+      text = original;
+    }
+    if (draws() % 4 != 0) continue;
+    const Json position = {{"line", draws() % 60}, {"character", draws() % 90}};
+    const Json params = {{"textDocument", {{"uri", uri(path)}}},
+                         {"position", position},
+                         {"options", Json::object()}};
+    const auto answer = desk.editor.ask(questions[draws() % 9], params);
+    CHECK((answer.is_null() || answer.is_structured()));
+  }
+  const auto told = Desk::told(desk.editor.diagnostics(path, 1 + rounds));
+  desk.write("domain.e", text);
+  std::multiset<std::string> expected;
+  for (const auto* root : {"edge.yaml", "scenario.yaml"}) {
+    for (const auto& one : desk.checked(root, "domain.e")) {
+      if (!expected.contains(one)) expected.insert(one);
+    }
+  }
+  CHECK(told == expected);
+  desk.editor.ask("shutdown", nullptr);
+  desk.editor.note("exit", nullptr);
+  CHECK(desk.editor.end() == 0);
+}
+
+TEST_CASE("places count UTF-16 units, or bytes where the editor offers them") {
+  for (const bool bytes : {false, true}) {
+    CliFixture files;
+    EditorClient editor;
+    const Json units = bytes ? Json::array({"utf-16", "utf-8"}) : Json::array({"utf-16"});
+    editor.ask("initialize", {{"capabilities", {{"general", {{"positionEncodings", units}}}}}});
+    files.write("accents.e",
+                "; \xF0\x9F\xA4\x96 \xC3\xA9 Up\nsort room\nfluent Up()\n[time] /* "
+                "\xF0\x9F\xA4\x96 */ HoldsAt(Down(),time).\nrange time 0 1\n");
+    const auto path = std::filesystem::canonical(files.folder() / "accents.e").string();
+    editor.open(path, files.read("accents.e"));
+    for (const auto& one : editor.diagnostics(path, 1)) {
+      if (one["code"] != "E2101") continue;
+      const auto line = std::string("[time] /* \xF0\x9F\xA4\x96 */ HoldsAt(");
+      CHECK(one["range"]["start"]["character"] == (bytes ? line.size() : line.size() - 2));
+    }
+  }
+}
+
+TEST_CASE("what is no message, or comes at the wrong time, is refused or ends the server cleanly") {
+  SUBCASE("before initialize, after shutdown, unknown and malformed requests") {
+    EditorClient editor;
+    CHECK(editor.ask("textDocument/hover", Json::object())["code"] == -32002);
+    editor.raw("Content-Length: 7\r\n\r\nnothing");
+    CHECK(editor.read()["error"]["code"] == -32700);
+    editor.ask("initialize", {{"capabilities", Json::array()}});
+    CHECK(editor.ask("nothing/known", Json::object())["code"] == -32601);
+    CHECK(editor.ask("textDocument/hover", {{"textDocument", 3}})["code"] == -32602);
+    editor.note("textDocument/didChange", {{"contentChanges", "no"}});
+    editor.note("nothing/known", nullptr);
+    editor.ask("shutdown", nullptr);
+    CHECK(editor.ask("textDocument/hover", Json::object())["code"] == -32600);
+    editor.note("exit", nullptr);
+    CHECK(editor.end() == 0);
+  }
+  SUBCASE("exit without shutdown") {
+    EditorClient editor;
+    editor.note("exit", nullptr);
+    CHECK(editor.end() == 1);
+  }
+  SUBCASE("the client goes away in the middle of a message") {
+    EditorClient editor;
+    editor.raw("Content-Length: 500\r\n\r\n{\"jsonrpc\":");
+    editor.close_input();
+    CHECK(editor.end() == 1);
+  }
+  SUBCASE("the client goes away while a text is checked") {
+    Desk desk;
+    desk.editor.open(desk.path("domain.e"), desk.read("domain.e"));
+    desk.editor.close_input();
+    CHECK(desk.editor.end() == 1);
+  }
+  SUBCASE("a header without end") {
+    EditorClient editor;
+    editor.raw(std::string(100'000, 'x'));
+    CHECK(editor.end() == 1);
+  }
+  SUBCASE("a message of 100 MB is dropped, and the next one is answered") {
+    EditorClient editor;
+    const std::size_t size = 100'000'000;
+    editor.raw("Content-Length: " + std::to_string(size) + "\r\n\r\n");
+    const std::string piece(1'000'000, ' ');
+    for (std::size_t sent = 0; sent < size; sent += piece.size()) editor.raw(piece);
+    CHECK(editor.ask("initialize", Json::object()).contains("capabilities"));
+  }
+}
+
+}  // namespace
+}  // namespace parallax::test

@@ -1,0 +1,47 @@
+#include "tools/app/file_check.h"
+
+#include <string>
+#include <vector>
+
+#include "compiler/artifact/artifact_reader.h"
+#include "compiler/artifact/artifact_writer.h"
+#include "tools/app/dead_retries.h"
+#include "tools/app/scenario_check.h"
+#include "tools/app/scenario_model.h"
+
+namespace parallax::tools {
+namespace {
+
+bool names_scenario(const std::string& path) {
+  return path.ends_with(".yaml") || path.ends_with(".yml");
+}
+
+}  // namespace
+
+void check_files(const ModelOptions& options, Context& context) {
+  std::vector<std::string> models;
+  for (const auto& path : options.models) {
+    // Reports into the sink; a result says only that there was nothing to report.
+    if (names_scenario(path)) {
+      const auto loaded =
+          load_scenario_model(path, context, {.as_run = true, .lint = options.lint});
+      if (!loaded) continue;
+      report_dead_retries(loaded->compilation, context);
+      report_dead_handlers(loaded->compilation, context);
+      check_before_run(*loaded, context);
+    } else if (compiler::is_artifact_name(path)) {
+      (void)compiler::load_artifact(path, context.files(), context.sink());
+    } else {
+      models.push_back(path);
+    }
+  }
+  if (models.empty()) return;
+  auto together = options;
+  together.models = models;
+  const auto compilation = compile_models(together, context);
+  if (!compilation) return;
+  report_dead_retries(*compilation, context);
+  report_dead_handlers(*compilation, context);
+}
+
+}  // namespace parallax::tools
