@@ -24,7 +24,7 @@ std::string text_of(const base::Diagnostic& diagnostic, const base::SourceFiles&
   return help.empty() ? text : text + "\nhelp: " + std::string(help);
 }
 
-/// What stands between the quotes that follow `before`.
+/// The text between the quotes that follow `before`.
 std::optional<std::string> quoted_after(const std::string& sentence, std::string_view before) {
   const auto at = sentence.find(before);
   if (at == std::string::npos) return std::nullopt;

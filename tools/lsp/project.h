@@ -18,9 +18,9 @@ namespace parallax::tools {
 /// The text of a file as it is edited, or as it lies on disk; none where it cannot be read.
 using TextOf = std::function<std::optional<std::string>(const std::string& path)>;
 
-/// What `check` has to be asked so that it looks at a file, with what it reads: a scenario, or one
-/// or more model files. Found by names that texts mention beside each other, without compiling
-/// anything.
+/// The files that `check` has to be asked about to look at a file with all that it reads: a
+/// scenario, or one or more model files. Found by names that texts mention beside each other,
+/// without compiling anything.
 std::vector<std::string> roots_of(const std::string& path, const TextOf& text_of);
 
 /// A root and every file that it mentions, directly or by others, as far as they lie beside each

@@ -659,7 +659,7 @@ class EditorServer {
         {{{"range", range_of(Positions(text, unit_), 0, text.size())}, {"newText", *formatted}}});
   }
 
-  /// What the messages in the range say would mend them, where a change of text does it.
+  /// The mends that messages in the range name, where a change of text is one.
   Json actions(const Json& params) {
     const auto path = asked_path(params);
     const auto& text = documents_[path].text;

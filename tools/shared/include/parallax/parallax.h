@@ -10,7 +10,7 @@
 //     const px::Run run = px::run("scenario.yaml", {.folder = "out/first"});
 //     std::puts(run.summary.c_str());
 //
-// What cannot be done is an exception, px::Failure, with the messages that the program would print.
+// Failures are exceptions, px::Failure, with the messages that the program would print.
 // Functions may be called from several threads at the same time; one Model may be used by several,
 // too. Units are SI, angles radians.
 
@@ -25,7 +25,7 @@
 #include <variant>
 #include <vector>
 
-/// What this header was made for; version() says what is linked.
+/// The version that this header belongs to; version() says what is linked.
 #define PARALLAX_VERSION "0.2.0"
 
 #if defined(__GNUC__)
@@ -86,7 +86,7 @@ struct Trace {
   std::string json;           // as `parallax traces --format jsonl` does
 };
 
-/// What is known when a list of traces has ended.
+/// The state of knowledge when a list of traces has ended.
 enum class Explored {
   kAll,        // there is no further trace
   kUpToBound,  // none up to the horizon; executions go on beyond it
