@@ -41,9 +41,9 @@ enum class RareEventEnd : std::uint8_t {
   kUnequal,     // by the caller: starts were not valid, and the law is of several parts
   kStopped,     // by the caller
 };
-inline constexpr auto kRareEventEndWords = base::word_table<RareEventEnd>(
-    "estimated", "not-reached", "flat", "not-resolved", "lost", "invalid-starts", "unequal-starts",
-    "stopped");
+inline constexpr auto kRareEventEndWords =
+    base::word_table<RareEventEnd>("estimated", "not-reached", "flat", "not-resolved", "lost",
+                                   "invalid-starts", "unequal-starts", "stopped");
 constexpr std::string_view to_string(RareEventEnd end) { return kRareEventEndWords.of(end); }
 
 struct RareEventResult {

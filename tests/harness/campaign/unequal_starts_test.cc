@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "harness/campaign/campaign.h"
 #include "harness/campaign/rare_rates.h"
 #include "harness/campaign/rates.h"
 #include "harness/report/report.h"
@@ -72,6 +73,54 @@ TEST_CASE("rare rates: starts that are not valid in some initial states give no 
     const auto counted = estimate_rates(*scenario, feed, factory, options, sink);
     REQUIRE(counted.has_value());
     CHECK(std::abs(counted->traces.at(0).any.rate - 0.5) < 0.1);
+  }
+}
+
+/// Shows the robot in the middle of its cell, wherever it was to begin.
+class StubbornCells final : public Simulator {
+ public:
+  StubbornCells() : cells_({{0.0, 0.0}, {0.0, 0.0}}) {}
+  SimulatorInfo info() override { return cells_.info(); }
+  Outcome reset(const State& initial, std::uint64_t seed) override {
+    return cells_.reset(initial, seed);
+  }
+  Outcome act(std::string_view action, const State& arguments, double limit_s) override {
+    return cells_.act(action, arguments, limit_s);
+  }
+  State observe() override {
+    auto seen = cells_.observe();
+    seen["robot.x"] = 0.5;
+    return seen;
+  }
+
+ private:
+  test::CellSimulator cells_;
+};
+
+TEST_CASE("a run whose simulator does not take its starts claims nothing of them") {
+  const test::TempFolder folder;
+  folder.write("domain.e", "sort region\n");
+  base::DiagnosticSink sink;
+  base::SourceFiles files;
+  const auto scenario =
+      load_scenario(folder.write("scenario.yaml", test::cell_scenario(2)), files, sink);
+  REQUIRE(scenario.has_value());
+  for (const bool stubborn : {false, true}) {
+    CampaignOptions options;
+    options.run_dir = folder.write(stubborn ? "stubborn" : "obedient", "");
+    std::filesystem::remove(options.run_dir);
+    test::CellFeed feed(2, test::CellFeed::boxes(2));
+    const auto factory = [stubborn]() -> std::unique_ptr<Simulator> {
+      if (stubborn) return std::make_unique<StubbornCells>();
+      return std::make_unique<test::CellSimulator>(test::CellRates{{0.0, 0.0}, {0.0, 0.0}});
+    };
+    const auto result = run_campaign(*scenario, feed, factory, options, files, sink);
+    REQUIRE(result.has_value());
+    CHECK(result->verdict ==
+          (stubborn ? CampaignVerdict::kInconclusive : CampaignVerdict::kNoDiscrepancy));
+    const auto summary = campaign_summary(*result, {});
+    CHECK((summary.find("does not begin where it is told to") != std::string::npos) == stubborn);
+    CHECK((summary.find("`robot.x` was drawn from") != std::string::npos) == stubborn);
   }
 }
 
