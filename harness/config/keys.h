@@ -137,6 +137,7 @@ struct Key {
   static constexpr std::string_view kFor = "for";
   static constexpr std::string_view kFormula = "formula";
   static constexpr std::string_view kFrame = "frame";
+  static constexpr std::string_view kFrameAtM = "frame_at_m";
   static constexpr std::string_view kFriction = "friction";
   static constexpr std::string_view kFromPlan = "from_plan";
   static constexpr std::string_view kGaps = "gaps";
@@ -208,6 +209,7 @@ struct Key {
   static constexpr std::string_view kPlan = "plan";
   static constexpr std::string_view kPolygon = "polygon";
   static constexpr std::string_view kPositionM = "position_m";
+  static constexpr std::string_view kPositions = "positions";
   static constexpr std::string_view kPreset = "preset";
   static constexpr std::string_view kRadiusM = "radius_m";
   static constexpr std::string_view kRange = "range";

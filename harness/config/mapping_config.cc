@@ -87,34 +87,48 @@ void read_start(const YamlNode& node, Region& region, base::DiagnosticSink& sink
   }
 }
 
-void read_frame(const YamlFields& fields, const WorldSpec& world, Region& region) {
+void read_frame(const YamlFields& fields, const RegionWorld& world, Region& region) {
+  auto& sink = fields.sink();
   fields.text(Key::kFrame, region.frame);
-  if (region.frame.empty()) return;
-  const auto body = std::find_if(world.bodies.begin(), world.bodies.end(),
+  const auto& bodies = world.spec.bodies;
+  const auto body = std::find_if(bodies.begin(), bodies.end(),
                                  [&](const BodySpec& b) { return b.name == region.frame; });
-  if (body == world.bodies.end()) {
+  if (const auto* place = fields.find(Key::kFrameAtM);
+      place != nullptr && (region.frame.empty() || !world.is_external || body != bodies.end())) {
+    sink.error(codes::kYamlOutOfBounds, place->range, key_text(Key::kFrameAtM), "given",
+               region.frame.empty() ? "beside a `frame`"
+                                    : "absent: `world` says where the body stands at first");
+    return;
+  }
+  if (region.frame.empty()) return;
+  if (body == bodies.end() && world.is_external) {
+    if (fields.require(Key::kFrameAtM) == nullptr) return;
+    const auto at = fields.numbers(Key::kFrameAtM, 3);
+    if (at) region.frame_start = {(*at)[0], (*at)[1], (*at)[2]};
+    return;
+  }
+  if (body == bodies.end()) {
     std::vector<std::string> known;
-    for (const auto& each : world.bodies) known.push_back(each.name);
-    auto error = fields.sink().error(codes::kYamlUnknownChoice, fields.find(Key::kFrame)->range,
-                                     region.frame, Key::kBody);
+    for (const auto& each : bodies) known.push_back(each.name);
+    auto error = sink.error(codes::kYamlUnknownChoice, fields.find(Key::kFrame)->range,
+                            region.frame, Key::kBody);
     add_suggestion(error, region.frame, known, "bodies");
     return;
   }
   if (body->yaw_rad != 0.0) {
-    fields.sink().error(codes::kYamlOutOfBounds, fields.find(Key::kFrame)->range,
-                        key_text(Key::kFrame), "a body that is turned at the start",
-                        "one with yaw_rad 0");
+    sink.error(codes::kYamlOutOfBounds, fields.find(Key::kFrame)->range, key_text(Key::kFrame),
+               "a body that is turned at the start", "one with yaw_rad 0");
   }
   region.frame_start = {body->p_WB.x(), body->p_WB.y(), body->p_WB.z()};
 }
 
-Region read_region(const YamlEntry& entry, const WorldSpec& world, base::DiagnosticSink& sink) {
+Region read_region(const YamlEntry& entry, const RegionWorld& world, base::DiagnosticSink& sink) {
   Region region;
   region.name = entry.key;
   region.source = entry.key_range;
   YamlFields fields(entry.value, fmt::format("the region `{}`", entry.key), sink);
   auto keys = axis_keys();
-  keys.insert(keys.end(), {Key::kFrame, Key::kStart});
+  keys.insert(keys.end(), {Key::kFrame, Key::kFrameAtM, Key::kStart});
   keys.insert(keys.end(), kAreaKeys.begin(), kAreaKeys.end());
   fields.only(keys);
   read_bounds(fields, region);
@@ -125,7 +139,7 @@ Region read_region(const YamlEntry& entry, const WorldSpec& world, base::Diagnos
   return region;
 }
 
-RegionSection read_section(YamlFields& fields, std::string name, const WorldSpec& world,
+RegionSection read_section(YamlFields& fields, std::string name, const RegionWorld& world,
                            base::DiagnosticSink& sink) {
   static constexpr std::array<std::string_view, 2> kGaps = {"error", "allowed"};
   RegionSection section;
@@ -365,7 +379,7 @@ std::string with_positions(const std::string& text, const SymbolPattern& pattern
   }
 }
 
-std::vector<RegionSection> read_regions(const YamlNode& node, const WorldSpec& world,
+std::vector<RegionSection> read_regions(const YamlNode& node, const RegionWorld& world,
                                         base::DiagnosticSink& sink) {
   std::vector<RegionSection> sections;
   YamlFields fields(node, key_text(Key::kRegions), sink);

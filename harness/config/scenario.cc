@@ -269,7 +269,7 @@ class ScenarioReader {
     scenario.regions_source = scenario.mapping_source = scenario.simulator.source;
     std::vector<RegionSection> sections;
     if (regions != nullptr) {
-      sections = read_regions(*regions, scenario.world, sink_);
+      sections = read_regions(*regions, {scenario.world, !scenario.simulator.is_built_in()}, sink_);
       scenario.regions_source = key_range(Key::kRegions);
     }
     const bool regions_read = sink_.error_count() == errors_before;

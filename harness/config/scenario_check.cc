@@ -162,6 +162,15 @@ class NameChecker {
 
 /// The variables that depend on a fluent's arguments, `{item}.held_by.{arm}`: one message for an
 /// entry, about its first fluent that cannot be read.
+/// The place of the region's frame, where only the simulator knows that body.
+void add_frame_variables(const Scenario& scenario, const FluentBinding& binding,
+                         const GroundFluent& fluent, std::vector<std::string>& variables) {
+  if (scenario.simulator.is_built_in() || binding.inside() == nullptr) return;
+  const auto* region = binding.inside()->region_of(fluent, scenario.mapping->regions());
+  if (region == nullptr || region->frame.empty()) return;
+  for (const auto* item : {".x", ".y", ".z", ".yaw"}) variables.push_back(region->frame + item);
+}
+
 void check_fluent_variables(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
                             const std::vector<Parameter>& parameters, base::DiagnosticSink& sink) {
   check_kinds(scenario, fluents, parameters, sink);
@@ -171,7 +180,9 @@ void check_fluent_variables(const Scenario& scenario, const std::vector<GroundFl
   for (const auto& fluent : fluents) {
     const auto* binding = scenario.mapping->find(fluent.symbol);
     if (binding == nullptr || binding->is_ignored() || reported.contains(fluent.symbol)) continue;
-    for (const auto& variable : binding->variables(fluent, scenario.mapping->regions())) {
+    auto variables = binding->variables(fluent, scenario.mapping->regions());
+    add_frame_variables(scenario, *binding, fluent, variables);
+    for (const auto& variable : variables) {
       if (index.contains(variable)) continue;
       reported.insert(fluent.symbol);
       auto error = sink.error(codes::kUnknownSimVariable, binding->source, variable);

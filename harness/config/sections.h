@@ -63,8 +63,15 @@ struct RegionSection {
   std::vector<std::string> functions;
 };
 
-/// `regions`: `cells` of one family, or `sets` of families. Frames are looked up in `world`.
-std::vector<RegionSection> read_regions(const YamlNode& node, const WorldSpec& world,
+/// The world that regions are in.
+struct RegionWorld {
+  const WorldSpec& spec;
+  bool is_external = false;  // of another simulator
+};
+
+/// `regions`: `cells` of one family, or `sets` of families. Frames are looked up in `world`; where
+/// the world is another simulator's, that one may know more bodies.
+std::vector<RegionSection> read_regions(const YamlNode& node, const RegionWorld& world,
                                         base::DiagnosticSink& sink);
 
 /// `mapping`: one binding per fluent symbol.

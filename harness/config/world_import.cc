@@ -12,6 +12,7 @@
 #include "harness/config/sections.h"
 #include "harness/import/import.h"
 #include "harness/import/mesh.h"
+#include "harness/import/way_within.h"
 #include "harness/world/structure_check.h"
 
 namespace parallax::harness {
@@ -305,16 +306,29 @@ class WorldImporter {
     }
     YamlFields fields(entry.value, key_text(entry.key), sink_);
     if (format_->key == Key::kUrdf) {
-      fields.only({Key::kFile, Key::kAtM, Key::kYawRad, Key::kFixed});
+      fields.only({Key::kFile, Key::kAtM, Key::kYawRad, Key::kFixed, Key::kPositions});
     } else if (const auto* fixed = entry.value.find(Key::kFixed)) {
       refuse_fixed(*fixed);
     } else {
-      fields.only({Key::kFile, Key::kAtM, Key::kYawRad});
+      fields.only({Key::kFile, Key::kAtM, Key::kYawRad, Key::kPositions});
     }
     if (const auto* file = fields.require(Key::kFile)) set_file(*file, Key::kFile);
     read_vector(fields, Key::kAtM, input_.p_WI);
     fields.angle(Key::kYawRad, input_.yaw_rad);
     fields.boolean(Key::kFixed, input_.fixed);
+    read_positions(fields);
+  }
+
+  void read_positions(const YamlFields& fields) {
+    constexpr double kMost = 1e3;
+    const auto* positions = fields.find(Key::kPositions);
+    if (positions == nullptr) return;
+    const YamlFields all(*positions, key_text(Key::kPositions), sink_);
+    for (const YamlEntry& entry : positions->entries) {
+      const auto value = read_number(entry.value, key_text(entry.key),
+                                     NumberBounds{-kMost, kMost, false, false}, sink_);
+      if (value) input_.positions[entry.key] = *value;
+    }
   }
 
   /// Folders of models mean nothing where nothing is taken over.
@@ -391,14 +405,33 @@ class WorldImporter {
     }
     const fs::path way(name);
     if (name.find(':') != name.npos || way.is_absolute()) return std::nullopt;
+    if (!is_mesh_format(way)) return std::nullopt;
+    if (std::find(way.begin(), way.end(), "..") != way.end()) {
+      return mesh_file_above(name, folders, description);
+    }
     for (const fs::path& part : way) {
       if (part.empty() || part.string().front() == '.') return std::nullopt;
     }
-    if (!is_mesh_format(way)) return std::nullopt;
     for (const fs::path& folder : folders) {
       std::error_code error;
       files_.note_input((folder / way).lexically_normal().string());
       if (fs::is_regular_file(folder / way, error)) return fs::absolute(folder / way).string();
+    }
+    return std::nullopt;
+  }
+
+  /// A way up must end below the description's folder or one of `models`.
+  std::optional<std::string> mesh_file_above(const std::string& name,
+                                             const std::vector<std::filesystem::path>& folders,
+                                             const std::filesystem::path& description) const {
+    std::vector<std::filesystem::path> roots = {base::real_path(description).parent_path()};
+    roots.insert(roots.end(), input_.folders.begin(), input_.folders.end());
+    for (const auto& folder : folders) {
+      const auto way = way_within(base::real_path(folder), name, roots);
+      if (!way) continue;
+      std::error_code error;
+      files_.note_input(way->first.string());
+      if (std::filesystem::is_regular_file(way->first, error)) return way->first.string();
     }
     return std::nullopt;
   }

@@ -69,15 +69,18 @@ void Conformance::add_claims() {
                    : measured == Repeatability::kBitwise
                        ? "yes: a lost run is made again with its start and seed"
                        : "yes, and wrongly: a run that is made again is another one";
-  claims.independence =
-      !known                                     ? "unknown"
-      : wears_                                   ? "no: a run depends on those before it"
-      : measured == Repeatability::kNone         ? "only if its own randomness is independent "
-                                                   "from run to run, which no seed controls"
-      : noise_seen_ && info.seeds && seeds_fine_ ? "yes: starts and seeds are drawn independently"
-      : noise_seen_                              ? "only if it really uses the seed"
-                                                 : "yes: starts are drawn independently, and "
-                                                   "nothing else varies";
+  claims.independence = !known   ? "unknown"
+                        : wears_ ? "no: a run depends on those before it"
+                        : measured == Repeatability::kNone
+                            ? std::string(
+                                  "only if its own randomness is independent from run to "
+                                  "run, which no seed controls") +
+                                  (looks_alike_ ? "; early and late runs look alike" : "")
+                        : noise_seen_ && info.seeds && seeds_fine_
+                            ? "yes: starts and seeds are drawn independently"
+                        : noise_seen_ ? "only if it really uses the seed"
+                                      : "yes: starts are drawn independently, and "
+                                        "nothing else varies";
   claims.jobs = !jobs_work_ ? "unknown"
                 : *jobs_work_
                     ? "yes"
@@ -108,6 +111,7 @@ ConformanceReport Conformance::run() {
     check_invalid_starts();
     check_unknown();
     check_time_limit();
+    check_start_up();
     check_timing();
     check_units();
     check_end();

@@ -23,6 +23,7 @@ enum class CheckKind : std::uint8_t {
   kInvalidStart,
   kUnknown,
   kTimeLimit,
+  kStartUp,
   kTiming,
   kUnits,
   kEnd,

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "harness/conformance/conformance_run.h"
 #include "harness/simulator/protocol_check.h"
@@ -36,6 +37,7 @@ bool Conformance::connect() {
   if (probe_ && probe_->is_alive()) return true;
   if (given_up()) return false;
   probe_ = std::make_unique<ProtocolProbe>(options_.process);
+  reset_before_ = false;
   if (!probe_->is_alive()) {
     losses_ = kLossesToGiveUp;
     fault("it does not start: " + probe_->trouble());
@@ -60,6 +62,7 @@ bool Conformance::connect() {
     if (const auto* world = std::get_if<DescribeReply>(&*described)) {
       report_.info.parameters = world->info.parameters;
       report_.info.actions = world->info.actions;
+      report_.info.instant_actions = world->info.instant_actions;
       report_.info.arguments = world->info.arguments;
       // Faults of lists that the description replaces; other faults are reported with it.
       const auto after = info_faults(report_.info);
@@ -92,7 +95,17 @@ std::optional<Outcome> Conformance::outcome_of(RequestBody body, double timeout_
 }
 
 std::optional<Outcome> Conformance::reset(const State& start, std::uint64_t seed) {
-  return outcome_of(ResetRequest{start, seed}, options_.process.reset_timeout_s);
+  if (!connect()) return std::nullopt;
+  const bool is_first = !std::exchange(reset_before_, true);
+  auto outcome = outcome_of(ResetRequest{start, seed}, options_.process.reset_timeout_s);
+  if (outcome) {
+    (is_first ? first_reset_walls_s_ : later_reset_walls_s_).push_back(probe_->wall_s());
+  } else if (is_first && probe_ && probe_->wall_s() >= options_.process.reset_timeout_s) {
+    warn(
+        "the first `reset` of a process was not answered in time: what takes long at the start "
+        "belongs before the reply to `hello`; --start-limit and `reset_timeout_s` give more time");
+  }
+  return outcome;
 }
 
 double Conformance::act_timeout_s(double limit_s) const {
@@ -109,6 +122,9 @@ std::optional<Outcome> Conformance::act(const TriedAction& action, double limit_
       outcome_of(ActRequest{action.controller, action.arguments, limit_s}, act_timeout_s(limit_s));
   if (!outcome) return outcome;
   if (!outcome->margins.empty()) has_margins_ = true;
+  if (std::isfinite(outcome->sim_time_s)) {
+    most_sim_time_said_s_ = std::max(most_sim_time_said_s_, outcome->sim_time_s);
+  }
   if (auto wrong = outcome_fault(action.controller, *outcome, limit_s, report_.info);
       !wrong.empty()) {
     fault(std::move(wrong));

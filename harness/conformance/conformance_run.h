@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -72,6 +73,10 @@ class Conformance {
   void check_refused(const char* what, const State& start, bool may_be_invalid);
   void check_unknown();
   void check_time_limit();
+  bool shows_a_clock();
+  void check_start_up();
+  bool tell_drift(const std::vector<RunRecord>& early, const std::vector<RunRecord>& late);
+  std::vector<RunRecord> several_runs(std::chrono::steady_clock::time_point until);
   void check_timing();
   void check_units();
   void check_end();
@@ -88,9 +93,12 @@ class Conformance {
   std::optional<RunRecord> first_;  // of the first start and seed
   std::vector<State> seen_;
   std::set<std::string> said_;
-  bool noise_seen_ = false, seeds_fine_ = true, wears_ = false;
+  bool noise_seen_ = false, seeds_fine_ = true, wears_ = false, looks_alike_ = false;
   std::optional<bool> jobs_work_;  // none: not tried
   double hello_wall_s_ = 0.0;
+  bool reset_before_ = false;  // by the process that lives
+  std::vector<double> first_reset_walls_s_, later_reset_walls_s_;
+  double most_sim_time_said_s_ = 0.0;  // of any action
   double acted_wall_s_ = 0.0, acted_sim_s_ = 0.0;
   bool has_margins_ = false;
 };

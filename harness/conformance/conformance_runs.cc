@@ -1,21 +1,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 
 #include "harness/conformance/conformance_run.h"
-#include "harness/simulator/protocol_check.h"
 
-// Checks of runs: actions, repetition, seeds, time limits.
+// Checks of runs: actions, repetition, seeds, and how fast they are.
 
 namespace parallax::harness {
 namespace {
 
 constexpr int kRoundTrips = 20;
-// More resets than a campaign of one trace makes by default; fewer where they take long.
-constexpr int kWearResets = 120;
-constexpr std::chrono::seconds kWearTime{20};
 
 /// Boolean, number or text: what must not change between observations.
 int kind_of(const Value& value) {
@@ -55,8 +50,12 @@ void Conformance::check_actions() {
       warn(fmt::format("`{}` failed without a reason, so causes cannot be told apart", name));
     }
     const auto moved = difference_of(first_->states[i - 1], first_->states[i], "");
-    if (moved.kind != RunDifference::Kind::kNone && outcome.sim_time_s == 0.0) {
-      warn(fmt::format("`{}` changed something in no simulated time; say `sim_time`", name));
+    if (moved.kind != RunDifference::Kind::kNone && outcome.sim_time_s == 0.0 &&
+        !report_.info.is_instant(name)) {
+      warn(
+          fmt::format("`{}` changed something in no simulated time; say `sim_time`, or `instant` "
+                      "in `actions` where it takes none",
+                      name));
     }
   }
   say(now_, said);
@@ -162,70 +161,6 @@ void Conformance::check_seeds() {
                         noise_seen_ ? "four seeds give different results: " + difference.where
                                     : "four seeds give the same result",
                         report_.info.seeds ? "seeds are used" : "no seed is used"));
-}
-
-/// Is a start after many others still what it was, and what it is in a process that made none?
-void Conformance::check_wear() {
-  now_ = CheckKind::kWear;
-  if (!first_) return skip(now_, "no run came to its end");
-  if (report_.repeatability == Repeatability::kNone) {
-    return skip(now_, "the same start and seed give other results anyway");
-  }
-  const auto until = std::chrono::steady_clock::now() + kWearTime;
-  int resets = 0;
-  for (; resets < kWearResets && std::chrono::steady_clock::now() < until; ++resets) {
-    const auto begun = reset(starts_[static_cast<std::size_t>(resets) % starts_.size()],
-                             kTriedSeeds[static_cast<std::size_t>(resets) % 3]);
-    if (!begun) return skip(now_, fmt::format("it was lost in reset {}", resets + 1));
-  }
-  const auto compare = [&](const std::string& place) {
-    const auto again = record(starts_.front(), kTriedSeeds[0]);
-    if (!again) return fmt::format("did not come to its end {}", place);
-    const auto difference = difference_of(*first_, *again, actions_, time_slack_s());
-    const bool is_same = difference.kind == RunDifference::Kind::kNone ||
-                         (difference.kind == RunDifference::Kind::kNumbers &&
-                          report_.repeatability == Repeatability::kTolerance &&
-                          difference.largest <= options_.tolerance);
-    return is_same ? std::string()
-                   : fmt::format("gives another result {}: {}", place, difference.where);
-  };
-  auto worn = compare(fmt::format("after {} resets", resets));
-  probe_.reset();
-  auto fresh = compare("in a process that was started for it");
-  for (const auto& what : {worn, fresh}) {
-    if (what.empty()) continue;
-    wears_ = true;
-    fault("the first run, made again, " + what);
-  }
-  say(now_, fmt::format("{} after {} resets, and in a new process",
-                        wears_ ? "not the same" : "the same", resets));
-}
-
-void Conformance::check_time_limit() {
-  now_ = CheckKind::kTimeLimit;
-  if (!first_) return skip(now_, "no run came to its end");
-  std::size_t longest = 0;
-  for (std::size_t i = 1; i < first_->outcomes.size(); ++i) {
-    if (first_->outcomes[i].sim_time_s > first_->outcomes[longest].sim_time_s) longest = i;
-  }
-  const double whole = first_->outcomes[longest].sim_time_s;
-  if (longest == 0 || whole <= 0.0) return skip(now_, "no action takes simulated time");
-  const auto begun = reset(starts_.front(), kTriedSeeds[0]);
-  if (!begun || !is_ready(*begun)) return skip(now_, "the start was not taken again");
-  for (std::size_t i = 0; i + 1 < longest; ++i) {
-    if (!act(actions_[i], actions_[i].time_limit_s)) return skip(now_, "it was lost on the way");
-  }
-  const auto& action = actions_[longest - 1];
-  const double limit = 0.5 * whole;
-  const auto done = act(action, limit);
-  if (!done) return skip(now_, "it was lost");
-  const bool is_over = done->sim_time_s > most_sim_time_s(limit, report_.info);  // `act` told it
-  if (!is_over && done->status == SimStatus::kOk) {
-    fault(fmt::format("`{}` takes {:g} s and is ok at a limit of {:g} s: it has to be truncated",
-                      action.controller, whole, limit));
-  }
-  say(now_, fmt::format("`{}`, {:g} s, with a limit of {:g} s: {} after {:g} s", action.controller,
-                        whole, limit, to_string(done->status), done->sim_time_s));
 }
 
 void Conformance::check_timing() {

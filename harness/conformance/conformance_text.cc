@@ -41,8 +41,8 @@ constexpr std::pair<const char*, std::string SupportedClaims::*> kClaimRows[] = 
 
 std::string_view to_string(CheckKind kind) {
   static constexpr std::string_view kNames[] = {
-      "handshake",     "reset",   "actions",    "determinism", "seeds", "wear",
-      "invalid start", "unknown", "time limit", "timing",      "units", "end"};
+      "handshake", "reset",      "actions",  "determinism", "seeds", "wear", "invalid start",
+      "unknown",   "time limit", "start-up", "timing",      "units", "end"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 

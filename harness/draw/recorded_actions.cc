@@ -115,7 +115,7 @@ void RecordedActions::observe(std::size_t timepoint) {
   if (timepoint >= recording_.observations.size()) return;
   const State& state = recording_.observations[timepoint];
   const auto& bodies = recording_.scene.bodies;
-  const std::string base = base_body(spec_);
+  const std::string base = this->base();
   std::set<std::size_t> done;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (!bodies[i].moves) continue;
@@ -139,6 +139,16 @@ void RecordedActions::observe(std::size_t timepoint) {
   }
 }
 
+/// The body that `robot.x` is about. Other simulators call it by its name, or `robot`.
+std::string RecordedActions::base() const {
+  auto named = base_body(spec_);
+  if (!named.empty()) return named;
+  const auto& bodies = recording_.scene.bodies;
+  const bool has_robot = std::any_of(bodies.begin(), bodies.end(),
+                                     [](const RecordedBody& body) { return body.name == "robot"; });
+  return has_robot ? "robot" : std::string();
+}
+
 Scene RecordedActions::shown() const {
   Scene scene;
   const auto& bodies = recording_.scene.bodies;
@@ -149,7 +159,7 @@ Scene RecordedActions::shown() const {
                              vector_of(poses_[i].p)});
     }
   }
-  scene.base = base_body(spec_);
+  scene.base = base();
   for (const auto& arm : recording_.scene.arms) {
     scene.arms.push_back({arm.name, vector_of(point_of(poses_[arm.from], arm.shoulder)),
                           vector_of(poses_[arm.to].p)});

@@ -18,7 +18,8 @@ std::string unlike_world(const Recording& recording, const WorldSpec& spec);
 /// as exact as it was observed, in between as it was recorded.
 class RecordedActions {
  public:
-  /// Both outlive this; `unlike_world` says nothing of them.
+  /// Both outlive this. `unlike_world` says nothing of them, or the simulator was another program,
+  /// of whose bodies `spec` need not know.
   RecordedActions(const Recording& recording, const WorldSpec& spec);
 
   /// The next one, which these arguments were given to; kLost where the recording has no more.
@@ -32,6 +33,7 @@ class RecordedActions {
   void read_frame();
   void observe(std::size_t timepoint);
   Scene shown() const;
+  std::string base() const;
   std::optional<Gaze> gaze() const;
   std::optional<Eigen::Vector3d> place_in_world(const PlaceSpec& place) const;
   void look(const std::string& controller, const State& arguments, const Outcome& outcome);

@@ -15,7 +15,8 @@ enum class ShapeRole : std::uint8_t { kWorld, kFree, kNearPad, kFarPad, kPart };
 /// The properties of a body, or of the floor, that contacts depend on.
 struct ContactSide {
   std::optional<BodyId> body;  // none: the floor
-  std::uint32_t assembly = 0, apart = 0;
+  std::uint32_t assembly = 0;
+  std::vector<std::uint32_t> apart{};  // WorldLayout::apart_of
   std::uint32_t material = 0;
   ShapeRole role = ShapeRole::kWorld;
   std::uint32_t gripper = 0;  // of a pad
@@ -32,7 +33,7 @@ class ContactRules {
     return friction_[a.material * material_count_ + b.material];
   }
   static bool never_collide(const ContactSide& a, const ContactSide& b) {
-    return (a.assembly != 0 && a.assembly == b.assembly) || (a.apart != 0 && a.apart == b.apart);
+    return (a.assembly != 0 && a.assembly == b.assembly) || share_word(a.apart, b.apart);
   }
   bool is_robot(const ContactSide& side) const {
     return robot_assembly_ != 0 && side.assembly == robot_assembly_;

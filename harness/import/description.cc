@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "harness/import/fitting.h"
 #include "harness/world/angles.h"
 
 namespace parallax::harness {
@@ -27,13 +28,18 @@ std::string material_of(double friction) {
 
 class Assembler {
  public:
-  Assembler(Description description, ImportedWorld& world)
-      : in_(std::move(description)), world_(world) {}
+  Assembler(Description description, const ImportInput& input, ImportedWorld& world)
+      : in_(std::move(description)), input_(input), world_(world) {}
 
   void run() {
-    while (merge_one()) {
-    }
-    hold_massless();
+    world_.fault = fit_joints(input_.positions, in_);
+    if (world_.fault) return;
+    do {
+      while (merge_one()) {
+      }
+      hold_massless();
+    } while (fit_massless(in_));
+    fit_inertias(in_);
     for (const LinkDescription& link : in_.links) add_body(link);
     for (const JointDescription& joint : in_.joints) add_joint(joint);
     if (in_.has_floor) world_.floor_material = material_of(in_.floor_friction.value_or(1.0));
@@ -166,7 +172,7 @@ class Assembler {
 
   static void set_mass(const LinkDescription& link, const Eigen::Matrix3d& R_BL, BodySpec& body) {
     body.mass_kg = link.mass_kg;
-    if (link.mass_kg == 0.0) return;
+    if (link.mass_kg == 0.0 || !link.has_own_inertia) return;
     const Eigen::Matrix3d R_BC = R_BL * link.X_LC.linear();
     const Eigen::Matrix3d I = R_BC * link.I_C_kg_m2 * R_BC.transpose();
     body.inertia = InertiaSpec{R_BL * link.X_LC.translation(), 0.5 * (I + I.transpose())};
@@ -246,6 +252,7 @@ class Assembler {
   }
 
   Description in_;
+  const ImportInput& input_;
   ImportedWorld& world_;
   std::set<double> frictions_;
 };
@@ -272,8 +279,8 @@ void add_mesh(const ImportInput& input, const std::string& uri, const std::strin
   link.shapes.push_back(std::move(shape));
 }
 
-void assemble(Description description, ImportedWorld& world) {
-  Assembler(std::move(description), world).run();
+void assemble(Description description, const ImportInput& input, ImportedWorld& world) {
+  Assembler(std::move(description), input, world).run();
 }
 
 std::string plain_name(const std::string& name) {

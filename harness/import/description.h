@@ -29,6 +29,7 @@ struct LinkDescription {
   Eigen::Isometry3d X_LC = Eigen::Isometry3d::Identity();  // centre of mass and its axes
   Eigen::Matrix3d I_C_kg_m2 = Eigen::Matrix3d::Zero();     // along these axes
   std::vector<LinkShape> shapes;
+  bool has_own_inertia = true;  // false: that of the shapes counts
   bool is_static = false;
   bool has_floor = false;  // what it has besides shapes
   std::string apart;       // BodySpec::apart
@@ -70,9 +71,9 @@ void add_mesh(const ImportInput& input, const std::string& uri, const std::strin
               LeftOutList& left_out);
 
 /// Makes bodies and joints of the scenario's kinds: links without mass become part of the link that
-/// they are fixed to, body frames stand upright at the default placement, and friction goes by
-/// materials.
-void assemble(Description description, ImportedWorld& world);
+/// they are fixed to, joints stand within their stops (fitting.h), body frames stand upright at the
+/// default placement, and friction goes by materials.
+void assemble(Description description, const ImportInput& input, ImportedWorld& world);
 
 /// A name that keys and variables can have: letters, digits and `_`; "::" becomes one `_`.
 std::string plain_name(const std::string& name);

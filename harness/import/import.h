@@ -21,8 +21,9 @@ struct ImportInput {
   std::vector<std::filesystem::path> folders;
   Eigen::Vector3d p_WI = Eigen::Vector3d::Zero();  // where its origin is put [m]
   double yaw_rad = 0.0;
-  bool fixed = false;                 // a robot's root to the world
-  std::filesystem::path folder = {};  // of the file
+  bool fixed = false;                            // a robot's root to the world
+  std::map<std::string, double> positions = {};  // of joints at first, by plain name [rad, m]
+  std::filesystem::path folder = {};             // of the file
   /// May a file be read, when it lies in one of the folders? Empty: it may.
   std::function<bool(const std::filesystem::path& path)> admits = {};
   /// The file of a mesh that is named so in the description at `from` (empty: in `text`); none

@@ -11,6 +11,9 @@ namespace {
 
 using Masks = std::vector<std::pair<std::int32_t, std::int32_t>>;
 
+/// Pairs that get a word of their own; more are listed.
+constexpr std::size_t kMostPairs = 2000;
+
 enum class Meeting : std::uint8_t { kNever, kSometimes, kAlways };
 
 /// By the bits of all shapes of the one and all of the other.
@@ -96,11 +99,19 @@ class Separator {
     if (is_open(one, other)) {
       const bool is_said = find(i) == find(k) && !broken_.contains(find(i));
       if (meets == Meeting::kAlways || is_said) return;
+      if (meets == Meeting::kNever && part(one, other)) return;
       leave("pairs of bodies that are kept apart (contype, conaffinity, exclude)", one,
             links_[other.link].name);
     } else if (tree_[one.body] != 0 && meets != Meeting::kNever && !are_joined(one, other)) {
       leave("collisions of parts that hang together by joints", one, links_[other.link].name);
     }
+  }
+
+  /// Gives two bodies a word of their own. False: there are too many such pairs.
+  bool part(const MjcfSide& one, const MjcfSide& other) {
+    if (pairs_.size() >= kMostPairs) return false;
+    pairs_.emplace_back(one.link, other.link);
+    return true;
   }
 
   bool are_joined(const MjcfSide& one, const MjcfSide& other) const {
@@ -124,6 +135,14 @@ class Separator {
       if (sizes[group] < 2 || broken_.contains(group)) continue;
       links_[sides_[i].link].apart = "apart_of_" + plain_name(links_[sides_[group].link].name);
     }
+    for (const auto& [a, b] : pairs_) {
+      const auto word =
+          fmt::format("{}_without_{}", plain_name(links_[a].name), plain_name(links_[b].name));
+      for (const auto link : {a, b}) {
+        auto& words = links_[link].apart;
+        words += words.empty() ? word : ' ' + word;
+      }
+    }
   }
 
   std::size_t find(std::size_t i) {
@@ -144,6 +163,7 @@ class Separator {
   std::vector<std::uint32_t> weld_, tree_;  // by body; 0: the world
   std::vector<std::size_t> groups_;         // of sides, by the least of them
   std::set<std::size_t> broken_;
+  std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // of links
 };
 
 }  // namespace

@@ -83,7 +83,7 @@ class MjcfImporter {
     if (world_.fault) return;
     set_apart(model_, sides_, floors_, out_.links, out_.left_out);
     note_rest();
-    assemble(std::move(out_), world_);
+    assemble(std::move(out_), input_, world_);
   }
 
  private:
@@ -96,8 +96,14 @@ class MjcfImporter {
 
   void set_gravity() {
     const Eigen::Vector3d& g = model_.gravity_m_s2;
-    if (g.x() != 0.0 || g.y() != 0.0 || !std::isfinite(g.z())) {
+    // Some files have a trace of it aside, to break a symmetry.
+    constexpr double kTrace = 1e-3;
+    const double aside = std::hypot(g.x(), g.y());
+    if (!(aside <= kTrace * std::abs(g.z())) || !std::isfinite(g.z())) {
       return fault(places_.first("option"), "gravity does not point along z");
+    }
+    if (aside > 0.0) {
+      leave("gravity along x and y", fmt::format("{:g} m/s2", aside), places_.first("option"));
     }
     world_.gravity_m_s2 = g.z();
   }
@@ -293,11 +299,6 @@ class MjcfImporter {
     const MjcfBody& body = model_.bodies[i];
     if (body.is_static) return;
     const std::vector<std::size_t>& joints = parts_[i].joints;
-    if (joints.size() > 1) {
-      return fault(places_.joint(i, 1),
-                   fmt::format("the body `{}` has {} joints, and a body is taken over with one",
-                               names_[i], joints.size()));
-    }
     JointDescription one;
     one.parent = bare_.contains(body.parent) || body.parent == 0 ? "" : names_[body.parent];
     one.child = names_[i];
@@ -312,9 +313,29 @@ class MjcfImporter {
       }
       return note_joint(free, name, places_.joint(i, 0));
     } else {
-      set_joint(model_.joints[joints.front()], i, one);
+      return add_chain(i, one);
     }
     out_.joints.push_back(std::move(one));
+  }
+
+  /// Joints move a body in their order: each but the last has a link of its own, without mass.
+  void add_chain(std::uint32_t i, JointDescription one) {
+    const std::vector<std::size_t>& joints = parts_[i].joints;
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      JointDescription next = one;
+      next.child = names_[i];
+      set_joint(model_.joints[joints[k]], i, k, next);
+      if (k + 1 < joints.size()) {
+        LinkDescription between;
+        between.name = unused(fmt::format("{}_moved_by_{}", names_[i], next.name));
+        between.offset = next.offset;
+        between.X_WL = X_WB_[i];
+        next.child = between.name;
+        out_.links.push_back(std::move(between));
+      }
+      one.parent = next.child;
+      out_.joints.push_back(std::move(next));
+    }
   }
 
   /// Appends underscores to a name until no joint in the file has it.
@@ -326,9 +347,15 @@ class MjcfImporter {
     return name;
   }
 
-  void set_joint(const MjcfJoint& joint, std::uint32_t body, JointDescription& one) {
-    one.offset = places_.joint(body, 0);
-    one.name = joint.name.empty() ? unused_joint(names_[body] + "_joint") : joint.name;
+  void set_joint(const MjcfJoint& joint, std::uint32_t body, std::size_t number,
+                 JointDescription& one) {
+    one.offset = places_.joint(body, number);
+    if (joint.name.empty()) {
+      one.name = unused_joint(number == 0 ? names_[body] + "_joint"
+                                          : fmt::format("{}_joint_{}", names_[body], number + 1));
+    } else {
+      one.name = joint.name;
+    }
     if (!has_numbers(joint)) {
       return fault(one.offset, fmt::format("something of the joint `{}` is no number", one.name));
     }

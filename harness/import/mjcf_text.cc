@@ -11,6 +11,7 @@
 #include "harness/import/mesh.h"
 #include "harness/import/mjcf_census.h"
 #include "harness/import/plain_path.h"
+#include "harness/import/way_within.h"
 
 namespace parallax::harness {
 namespace {
@@ -74,19 +75,18 @@ class FileShelf {
       out.fault = fmt::format("`{}` {}", shortened(name), why);
       return out;
     };
-    fs::path way;
-    for (const fs::path& part : fs::path(name)) {
-      if (part != ".") way /= part;
-    }
-    if (!is_plain_path(way.string())) {
-      return fault(
-          "is not read: only files below the folder of the description and those of "
-          "`models` are, by plain names without `..`");
-    }
+    const fs::path written(name);
+    const bool leads_up = std::find(written.begin(), written.end(), "..") != written.end();
+    bool is_within = false;
     for (const fs::path& folder : folders_) {
+      // A way up begins where the description lies, and nowhere else.
+      if (leads_up && &folder != &folders_.front()) break;
       std::error_code error;
-      const fs::path path = folder / way;
-      if (leads_through_link(folder, path)) return fault("leads through a link");
+      const auto way = way_within(folder, name, folders_);
+      if (!way) continue;
+      is_within = true;
+      const auto& [path, root] = *way;
+      if (leads_through_link(root, path)) return fault("leads through a link");
       if (!fs::exists(fs::symlink_status(path, error))) {
         absent_.insert(path.lexically_normal().string());
         continue;
@@ -96,6 +96,11 @@ class FileShelf {
       out.path = path.lexically_normal().string();
       if (!out.fault) read_.insert(out.path);
       return out;
+    }
+    if (!is_within) {
+      return fault(
+          "is not read: only files below the folder of the description and those of "
+          "`models` are, by plain names");
     }
     return fault("is neither beside the description nor in a folder of `models`");
   }

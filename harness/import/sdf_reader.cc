@@ -11,6 +11,7 @@
 
 #include "harness/import/description.h"
 #include "harness/import/sdf_includes.h"
+#include "harness/import/sdf_mending.h"
 #include "harness/import/sdf_module.h"
 #include "harness/import/xml_census.h"
 
@@ -91,7 +92,7 @@ class SdfReader {
  public:
   SdfReader(const ImportInput& input, const XmlOutline& outline, ImportedWorld& world,
             const IncludeGate& gate)
-      : input_(input), places_(outline), world_(world) {
+      : input_(input), outline_(outline), places_(outline), world_(world) {
     list_rest(outline, kTaken, {}, out_.left_out);
     for (const auto& [text, place] : gate.texts()) {
       list_rest(
@@ -112,7 +113,7 @@ class SdfReader {
     config.SetFindCallback([](const std::string&) { return std::string(); });
     sdf::Root root;
     const sdf::Errors errors = root.LoadSdfString(input_.text, config);
-    if (!errors.empty()) return fault(errors.front());
+    if (!errors.empty() && !load_mended(root, config)) return fault(errors.front());
     if (root.WorldCount() > 1) return fault(0, "holds more than one world");
     if (root.WorldCount() == 1) {
       read_world(*root.WorldByIndex(0));
@@ -127,10 +128,20 @@ class SdfReader {
     } else {
       return fault(0, "holds neither a world nor a model");
     }
-    if (!world_.fault) assemble(std::move(out_), world_);
+    if (!world_.fault) assemble(std::move(out_), input_, world_);
   }
 
  private:
+  bool load_mended(sdf::Root& root, const sdf::ParserConfig& config) {
+    auto mended = mended_sdf(input_.text, outline_);
+    root = sdf::Root();
+    if (!root.LoadSdfString(mended.text, config).empty()) return false;
+    inertias_ = std::move(mended.inertias);
+    if (mended.visuals > 0) leave("visuals", "unnamed", std::size_t{0}, mended.visuals);
+    if (mended.sensors > 0) leave("sensors", "unnamed", std::size_t{0}, mended.sensors);
+    return true;
+  }
+
   void fault(std::size_t offset, std::string message) {
     if (!world_.fault) world_.fault = TextFault{offset, std::move(message)};
   }
@@ -180,6 +191,9 @@ class SdfReader {
       one.is_static = is_static;
       one.apart = alone && scope.empty() ? std::string() : group;
       read_link(link, X_WM, one);
+      if (const auto own = inertias_.find({model.Name(), link.Name()}); own != inertias_.end()) {
+        one.I_C_kg_m2 = own->second;
+      }
       out_.links.push_back(std::move(one));
     }
     for (std::uint64_t i = 0; i < model.ModelCount() && !world_.fault; ++i) {
@@ -345,8 +359,10 @@ class SdfReader {
   }
 
   const ImportInput& input_;
+  const XmlOutline& outline_;
   NamePlaces places_;
   ImportedWorld& world_;
+  std::map<std::pair<std::string, std::string>, Eigen::Matrix3d> inertias_;  // that it refuses
   Eigen::Isometry3d X_WI_ = Eigen::Isometry3d::Identity();
   Description out_;
   std::map<std::string, std::string> names_;  // of links, by scoped name

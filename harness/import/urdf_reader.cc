@@ -103,7 +103,7 @@ class UrdfReader {
     read_link(root, X, plain_name(model->getName()));
     if (!is_world(root) && input_.fixed) fix(root.name);
     note_rest();
-    assemble(std::move(out_), world_);
+    assemble(std::move(out_), input_, world_);
   }
 
  private:

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "compiler/base/contract.h"
+#include "harness/monitor/near_border.h"
 
 namespace parallax::harness {
 namespace {
@@ -161,8 +162,8 @@ std::int8_t ObservationReader::allowed(const FluentReader& reader,
 }
 
 /// Is the body in the region?
-std::int8_t ObservationReader::inside(const FluentReader& reader,
-                                      const ReportedValues& values) const {
+std::int8_t ObservationReader::inside(const FluentReader& reader, const ReportedValues& values,
+                                      const ReadingTolerance& tolerance, bool& near) const {
   Point point{};
   for (std::size_t i = 0; i < point.size(); ++i) {
     if (reader.axes[i] == kNone) continue;
@@ -186,29 +187,47 @@ std::int8_t ObservationReader::inside(const FluentReader& reader,
     point[place(RegionAxis::kZ)] -= z;
     point[place(RegionAxis::kBottom)] -= z;
   }
-  return known(mapping_.regions().contains(*reader.region, point));
+  if (tolerance.is_exact()) return known(mapping_.regions().contains(*reader.region, point));
+  // More than the tolerance away from every border it is the same.
+  const auto nearness = nearness_of(*reader.region, point, tolerance);
+  near = nearness == Nearness::kBorder;
+  return near ? kUnknown : known(nearness == Nearness::kInside);
 }
 
 /// Does the body lean no more than it may?
-std::int8_t ObservationReader::upright(const FluentReader& reader, const ReportedValues& values) {
+std::int8_t ObservationReader::upright(const FluentReader& reader, const ReportedValues& values,
+                                       double tolerance_rad, bool& near) {
   if (reader.roll == kNone) return kHolds;
   const auto roll = number_in(values[reader.roll]), pitch = number_in(values[reader.pitch]);
   if (!roll || !pitch) return kUnknown;
   // The cosine of the angle between the two verticals.
-  return known(std::cos(*roll) * std::cos(*pitch) >= std::cos(reader.upright_rad));
+  const double cosine = std::cos(*roll) * std::cos(*pitch);
+  if (tolerance_rad > 0.0) {
+    // Roll and pitch may both be off, which together change the angle by up to their sum.
+    const double lean = std::acos(std::clamp(cosine, -1.0, 1.0));
+    near = std::abs(lean - reader.upright_rad) <= 2.0 * tolerance_rad;
+    if (near) return kUnknown;
+  }
+  return known(cosine >= std::cos(reader.upright_rad));
 }
 
-void ObservationReader::read(const ReportedValues& values, bool at_rest, SeenState& out) const {
+void ObservationReader::read(const ReportedValues& values, bool at_rest, SeenState& out,
+                             const ReadingTolerance& tolerance) const {
   out.fluents.assign(readers_.size(), kUnknown);
   out.neither.clear();
   out.outside.clear();
+  out.one_of.clear();
+  out.near_border = false;
+  std::vector<bool> near(tolerance.is_exact() ? 0 : readers_.size(), false);
   for (std::size_t f = 0; f < readers_.size(); ++f) {
     const auto& reader = readers_[f];
     auto& seen = out.fluents[f];
     if (reader.binding->inside() != nullptr) {
       // All three have to hold; one that fails decides.
-      seen = std::min(allowed(reader, values), upright(reader, values));
-      if (seen != kFails) seen = std::min(seen, inside(reader, values));
+      bool leans = false, at_border = false;
+      seen = std::min(allowed(reader, values), upright(reader, values, tolerance.rad, leans));
+      if (seen != kFails) seen = std::min(seen, inside(reader, values, tolerance, at_border));
+      if (seen == kUnknown && (leans || at_border)) near[f] = true;
       continue;
     }
     if (reader.variable == kNone) continue;
@@ -220,9 +239,19 @@ void ObservationReader::read(const ReportedValues& values, bool at_rest, SeenSta
     } else if (const auto* range = std::get_if<RangeBinding>(&condition)) {
       const auto number = number_in(value);
       if (!number) continue;
+      const double slack =
+          is_angle(variables_[reader.variable]) ? tolerance.rad : std::max(tolerance.m, 0.0);
       const auto within = [&](const Interval& i) {
-        return *number >= i.lower && *number <= i.upper;
+        return *number >= i.lower - slack && *number <= i.upper + slack;
       };
+      if (slack > 0.0) {
+        const bool may_hold = within(range->holds), may_fail = within(range->fails);
+        const auto exactly = [&](const Interval& i) {
+          return *number >= i.lower + slack && *number <= i.upper - slack;
+        };
+        near[f] = (may_hold || may_fail) && !exactly(range->holds) && !exactly(range->fails);
+        if (may_hold && may_fail) continue;
+      }
       if (within(range->holds)) {
         seen = kHolds;
       } else if (within(range->fails)) {
@@ -234,22 +263,43 @@ void ObservationReader::read(const ReportedValues& values, bool at_rest, SeenSta
       seen = known(std::get<std::string>(*value) == reader.text);
     }
   }
+  read_bodies(values, at_rest, near, out);
+  for (std::size_t f = 0; f < readers_.size(); ++f) {
+    if (!at_rest && readers_[f].binding->at_rest_only) {
+      out.fluents[f] = kUnknown;
+    } else if (f < near.size() && near[f]) {
+      out.near_border = true;
+    }
+  }
+}
+
+/// Finds the bodies that are in none of their regions, and those that may be in one of several.
+void ObservationReader::read_bodies(const ReportedValues& values, bool at_rest,
+                                    const std::vector<bool>& near, SeenState& out) const {
   for (const auto& body : bodies_) {
     if (body.at_rest_only && !at_rest) continue;
-    bool is_somewhere = false, is_asked = false;
+    bool is_somewhere = false, is_asked = false, is_open = false;
+    std::vector<std::size_t> at_border;
     for (const auto f : body.fluents) {
       const auto may_hold = allowed(readers_[f], values);
       if (may_hold == kFails) continue;
       is_asked = true;
       is_somewhere = is_somewhere || may_hold != kHolds || out.fluents[f] != kFails;
+      // Another region that the body is in for certain, or of which nothing is known, says enough.
+      is_open = is_open || may_hold != kHolds || out.fluents[f] == kHolds ||
+                (out.fluents[f] == kUnknown && (near.empty() || !near[f]));
+      if (f < near.size() && near[f]) at_border.push_back(f);
     }
     if (is_asked && !is_somewhere) out.outside.push_back(body.outside);
+    if (is_open || at_border.empty()) continue;
+    // No state of a model has the body nowhere, so the only region within the tolerance is it.
+    if (at_border.size() == 1) {
+      out.fluents[at_border[0]] = kHolds;
+    } else {
+      out.one_of.push_back(std::move(at_border));
+    }
   }
   std::sort(out.outside.begin(), out.outside.end());
-  if (at_rest) return;
-  for (std::size_t f = 0; f < readers_.size(); ++f) {
-    if (readers_[f].binding->at_rest_only) out.fluents[f] = kUnknown;
-  }
 }
 
 }  // namespace parallax::harness

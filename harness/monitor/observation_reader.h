@@ -16,6 +16,13 @@ namespace parallax::harness {
 /// Values of the variables that a mapping asks for, by number; none: not reported.
 using ReportedValues = std::vector<std::optional<Value>>;
 
+/// How far a reported value may be from the real one: it may be any value up to so far away.
+struct ReadingTolerance {
+  double m = 0.0;    // places and heights, along each axis of the region's frame, and joints
+  double rad = 0.0;  // yaw, roll, pitch
+  bool is_exact() const { return m <= 0.0 && rad <= 0.0; }
+};
+
 /// The state of the compared fluents in a partial observation.
 struct SeenState {
   std::vector<std::int8_t> fluents;  // by number: 1 holds, -1 does not, 0 is not known or ignored
@@ -23,6 +30,11 @@ struct SeenState {
   /// state of a model stands for. Numbers of fluents; texts as of StateMapping::outside.
   std::vector<std::size_t> neither;
   std::vector<std::string> outside;
+  /// Bodies so near a border that several regions are possible: at least one fluent of each list
+  /// holds. Numbers of fluents, ascending.
+  std::vector<std::vector<std::size_t>> one_of;
+  /// A fluent would be read differently if a value differed by no more than the tolerance.
+  bool near_border = false;
   bool in_no_state() const { return !neither.empty() || !outside.empty(); }
 };
 
@@ -45,8 +57,10 @@ class ObservationReader {
   const std::vector<std::size_t>& variables_of(std::size_t fluent) const {
     return readers_[fluent].variables;
   }
-  /// `at_rest`: also the fluents that are compared at rest only. Linear in the fluents.
-  void read(const ReportedValues& values, bool at_rest, SeenState& out) const;
+  /// `at_rest`: also the fluents that are compared at rest only. A fluent that holds for some of
+  /// the values within the tolerance and not for others is unknown. Linear in the fluents.
+  void read(const ReportedValues& values, bool at_rest, SeenState& out,
+            const ReadingTolerance& tolerance = {}) const;
 
  private:
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
@@ -76,8 +90,12 @@ class ObservationReader {
   void prepare(const BorderBinding& kind, const GroundFluent& fluent, FluentReader& reader);
   void prepare(const IgnoredBinding& kind, const GroundFluent& fluent, FluentReader& reader);
   std::int8_t allowed(const FluentReader& reader, const ReportedValues& values) const;
-  std::int8_t inside(const FluentReader& reader, const ReportedValues& values) const;
-  static std::int8_t upright(const FluentReader& reader, const ReportedValues& values);
+  std::int8_t inside(const FluentReader& reader, const ReportedValues& values,
+                     const ReadingTolerance& tolerance, bool& near) const;
+  static std::int8_t upright(const FluentReader& reader, const ReportedValues& values,
+                             double tolerance_rad, bool& near);
+  void read_bodies(const ReportedValues& values, bool at_rest, const std::vector<bool>& near,
+                   SeenState& out) const;
 
   const StateMapping& mapping_;
   std::vector<std::string> variables_;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "compiler/base/utf8.h"
 #include "compiler/base/words.h"
 #include "harness/report/report_words.h"
 #include "harness/report/text_layout.h"
@@ -41,24 +42,25 @@ std::string reason_of(const ActionOutcome& outcome) {
   return outcome.reason.empty() ? std::string(to_string(outcome.status)) : outcome.reason;
 }
 
+enum class ToldReason : std::uint8_t { kWhole, kWord, kNot };
+
 /// One discrepancy, told in words.
 class Account {
  public:
   Account(const CampaignResult& result, const Discrepancy& found)
       : result_(result), found_(found), trace_(trace_of()), event_(parting_event()) {}
 
-  std::string sentence() const {
+  std::string sentence(ToldReason how = ToldReason::kWhole) const {
     const auto name = event_name();
     const auto acted = event_ && *event_ < outcomes().size();
     if (found_.path && acted && (found_.path->impossible || found_.path->outcome)) {
-      return excluded_step(name);
+      return excluded_step(name, how);
     }
     const auto& differing = differences();
     std::string text;
     if (acted && !found_.path && outcomes()[*event_].status != SimStatus::kOk &&
         !is_predicted_to_fail(*event_)) {
-      text = fmt::format("{} fails ({}), and the model says that it succeeds", name,
-                         reason_of(outcomes()[*event_]));
+      text = fmt::format("{} fails{}, and the model says that it succeeds", name, told_reason(how));
     } else if (differing.empty()) {
       text = found_.cause.text;
     } else {
@@ -71,6 +73,14 @@ class Account {
     }
     if (found_.kind == DiscrepancyKind::kTransient) text += "; it ends as predicted";
     return text;
+  }
+
+  /// The reason of the action that parts, in full; empty: no action failed there.
+  std::string reason() const {
+    if (!event_ || *event_ >= outcomes().size()) return {};
+    const auto& outcome = outcomes()[*event_];
+    if (outcome.status != SimStatus::kOk) return reason_of(outcome);
+    return found_.path ? found_.record.path->steps[*event_].condition : std::string();
   }
 
   std::string write(bool color) const {
@@ -108,6 +118,14 @@ class Account {
     return std::nullopt;
   }
 
+  /// " (path-blocked)" behind the event that failed.
+  std::string told_reason(ToldReason how) const {
+    if (how == ToldReason::kNot) return {};
+    const auto whole = reason();
+    return fmt::format(" ({})",
+                       how == ToldReason::kWord ? whole.substr(0, whole.find(": ")) : whole);
+  }
+
   std::string when() const { return event_ ? "after " + event_name() : "at the start"; }
 
   /// The fluents that differ where model and world part; where the end alone is compared, those
@@ -123,13 +141,11 @@ class Account {
   }
 
   /// Describes a step of an executed plan that the model does not have, or not with this outcome.
-  std::string excluded_step(const std::string& name) const {
+  std::string excluded_step(const std::string& name, ToldReason how) const {
     const auto& step = found_.record.path->steps[*event_];
     if (found_.path->impossible) return name + " happens, and the model has no such event there";
     if (!step.succeeded) {
-      const auto& outcome = outcomes()[*event_];
-      return fmt::format("{} fails ({}), and the model says that it cannot", name,
-                         outcome.status == SimStatus::kOk ? step.condition : reason_of(outcome));
+      return fmt::format("{} fails{}, and the model says that it cannot", name, told_reason(how));
     }
     return fmt::format("{} {}, and the model says that it cannot", name,
                        step.object.empty() ? std::string("succeeds") : "finds " + step.object);
@@ -277,6 +293,21 @@ class Account {
 
 std::string discrepancy_sentence(const CampaignResult& result, const Discrepancy& found) {
   return Account(result, found).sentence();
+}
+
+DiscrepancyHeadline discrepancy_headline(const CampaignResult& result, const Discrepancy& found,
+                                         std::size_t columns) {
+  const Account account(result, found);
+  auto whole = account.sentence();
+  if (base::count_code_points(whole) <= columns) return {std::move(whole), {}};
+  for (const auto how : {ToldReason::kWord, ToldReason::kNot}) {
+    auto brief = account.sentence(how);
+    if (brief == whole) continue;  // no action failed, or its reason is one word
+    if (how == ToldReason::kNot || base::count_code_points(brief) <= columns) {
+      return {std::move(brief), account.reason()};
+    }
+  }
+  return {std::move(whole), {}};
 }
 
 std::string discrepancy_summary(const CampaignResult& result, const Discrepancy& found,

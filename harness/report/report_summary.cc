@@ -70,9 +70,14 @@ class Summary {
   void headline() {
     const auto word = headline_verdict(result_, style_.color);
     const bool differs = result_.verdict == CampaignVerdict::kDiscrepancy && !found_.empty();
-    std::string text;
+    // The word carries its colour, of which the width knows nothing.
+    const auto plain = headline_verdict(result_, false);
+    std::string text, reason;
     if (differs) {
-      text = discrepancy_sentence(result_, *found_.front());
+      auto told = discrepancy_headline(result_, *found_.front(),
+                                       kReportColumns - base::count_code_points(plain) - 2);
+      text = std::move(told.sentence);
+      reason = std::move(told.reason);
     } else if (result_.traces.empty()) {
       text = result_.interrupted ? "it ended before anything was compared"
                                  : "no trace, so nothing was compared";
@@ -85,10 +90,9 @@ class Summary {
     } else if (result_.verdict == CampaignVerdict::kNoDiscrepancy) {
       text = in_states_text(result_);  // where the scenario leaves the others out
     }
-    // The word carries its colour, of which the width knows nothing.
-    const auto plain = headline_verdict(result_, false);
     auto lines = wrapped(plain + (text.empty() ? "" : ": "), text, 2);
     out_ += lines.replace(0, plain.size(), word);
+    if (!reason.empty()) line("reason", reason);
     if (differs) {
       // Without an opinion, the pointers below name the command that asks for one.
       const auto standing = standing_of(result_, *found_.front());

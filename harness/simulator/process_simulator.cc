@@ -338,6 +338,7 @@ bool ProcessSimulator::ask_for_description() {
   if (auto* described = std::get_if<DescribeReply>(&body)) {
     info_.parameters = std::move(described->info.parameters);
     info_.actions = std::move(described->info.actions);
+    info_.instant_actions = std::move(described->info.instant_actions);
     info_.arguments = std::move(described->info.arguments);
     return true;
   }

@@ -204,6 +204,9 @@ void read_world(FieldReader& reader, const Json& result, SimulatorInfo& info) {
                            : item.is_object() ? reader.string(item, "name")
                                               : std::string());
     if (info.actions.back().empty()) return reader.fail("an element of `actions` has no name");
+    if (item.is_object() && reader.boolean(item, "instant", false)) {
+      info.instant_actions.push_back(info.actions.back());
+    }
     if (const Json* args = item.is_object() ? reader.member(item, "args", false) : nullptr) {
       info.arguments[info.actions.back()] = read_arguments(reader, *args);
     }

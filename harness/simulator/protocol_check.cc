@@ -89,6 +89,9 @@ std::string outcome_fault(std::string_view action, const Outcome& outcome, doubl
   if (!std::isfinite(outcome.sim_time_s) || outcome.sim_time_s < 0.0) {
     return fmt::format("`{}` says that it took {:g} s", action, outcome.sim_time_s);
   }
+  if (outcome.sim_time_s > 0.0 && info.is_instant(action)) {
+    return fmt::format("`{}` is said to be `instant`, and took {:g} s", action, outcome.sim_time_s);
+  }
   if (outcome.sim_time_s <= most_sim_time_s(limit_s, info)) return {};
   return fmt::format("`{}` ran {:g} s with a limit of {:g} s", action, outcome.sim_time_s, limit_s);
 }

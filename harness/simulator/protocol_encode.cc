@@ -50,6 +50,7 @@ OrderedJson actions_to_json(const SimulatorInfo& info) {
   for (const std::string& name : info.actions) {
     OrderedJson json{{"name", name}};
     const auto arguments = info.arguments.find(name);
+    if (info.is_instant(name)) json["instant"] = true;
     if (arguments != info.arguments.end()) json["args"] = arguments_to_json(arguments->second);
     actions.push_back(std::move(json));
   }

@@ -84,6 +84,8 @@ struct SimulatorInfo {
   bool seeds = false;
   std::vector<Parameter> parameters;
   std::vector<std::string> actions;  // controllers that `act` accepts
+  /// Those of them that take no simulated time, as it says.
+  std::vector<std::string> instant_actions = {};
   double timestep_s = 0.0;
   /// The scene of its motion recordings, if it makes any.
   std::optional<RecordedScene> scene = {};
@@ -93,6 +95,7 @@ struct SimulatorInfo {
   double min_real_time_factor = 0.0;           // how fast it simulates at least; 0: not said
 
   bool can(std::string_view capability) const;
+  bool is_instant(std::string_view action) const;
 };
 
 /// An act that is going to be asked for.

@@ -101,15 +101,28 @@ void add_assemblies(WorldLayout& layout, const std::vector<JointSpec>& joints) {
   }
 }
 
+/// The words of a text, which blanks part.
+std::vector<std::string_view> words_in(std::string_view text) {
+  std::vector<std::string_view> out;
+  for (std::size_t at = text.find_first_not_of(' '); at < text.size();) {
+    const auto end = std::min(text.find(' ', at), text.size());
+    out.push_back(text.substr(at, end - at));
+    at = text.find_first_not_of(' ', end);
+  }
+  return out;
+}
+
 void number_groups(WorldLayout& layout) {
   std::map<std::string_view, std::uint32_t> numbers;
   for (const BodySpec& body : layout.bodies) {
-    if (!body.apart.empty()) numbers.emplace(body.apart, 0U);
+    for (const auto word : words_in(body.apart)) numbers.emplace(word, 0U);
   }
   std::uint32_t last = 0;
   for (auto& [word, number] : numbers) number = ++last;
   for (const BodySpec& body : layout.bodies) {
-    layout.apart_of.push_back(body.apart.empty() ? 0U : numbers.at(body.apart));
+    auto& own = layout.apart_of.emplace_back();
+    for (const auto word : words_in(body.apart)) own.push_back(numbers.at(word));
+    std::sort(own.begin(), own.end());
   }
 }
 

@@ -29,6 +29,17 @@ struct Link {
   std::vector<BodyId> members;  // sorted by name; the link's axes are those of the first
 };
 
+/// Have two ascending lists a number in common?
+inline bool share_word(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+  auto i = a.begin();
+  auto k = b.begin();
+  while (i != a.end() && k != b.end()) {
+    if (*i == *k) return true;
+    ++(*i < *k ? i : k);
+  }
+  return false;
+}
+
 /// A WorldSpec put into the order in which the engine creates it, with its structure made plain.
 struct WorldLayout {
   base::Store<BodyId, BodySpec> bodies;        // sorted by name
@@ -37,8 +48,9 @@ struct WorldLayout {
   base::Store<HingeId, JointSpec> hinges;      // sorted by name
   base::Store<LinkId, Link> links;             // sorted by the name of their first member
   std::vector<std::optional<LinkId>> link_of;  // by body; none: static
-  /// By body: bodies of one number, but 0, are kept apart by BodySpec::apart.
-  std::vector<std::uint32_t> apart_of;
+  /// By body: the words of BodySpec::apart by number, ascending. Bodies that share one never
+  /// collide.
+  std::vector<std::vector<std::uint32_t>> apart_of;
   /// By body. Bodies of one assembly hang together by joints and never collide with each other;
   /// 0 is the static world.
   std::vector<std::uint32_t> assembly_of;
@@ -50,10 +62,9 @@ struct WorldLayout {
   std::optional<HingeId> find_hinge(std::string_view name) const;
   /// Can the two never touch?
   bool never_collide(BodyId a, BodyId b) const {
-    const auto either = [&](const std::vector<std::uint32_t>& of) {
-      return of[a.index()] != 0 && of[a.index()] == of[b.index()];
-    };
-    return either(assembly_of) || either(apart_of);
+    const auto of_a = assembly_of[a.index()];
+    if (of_a != 0 && of_a == assembly_of[b.index()]) return true;
+    return share_word(apart_of[a.index()], apart_of[b.index()]);
   }
 };
 

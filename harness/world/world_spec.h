@@ -61,7 +61,8 @@ struct BodySpec {
   double yaw_rad = 0.0;
   bool gravity = true;
   bool collides = true;
-  std::string apart;  // bodies of one such word do not collide with each other; empty: none
+  /// Bodies that share a word do not collide with each other; blanks part several.
+  std::string apart;
   /// Which of x, y, z, yaw, bottom, mass a scenario may set at reset; the others keep their
   /// default. The robot's base body takes x (and, of a mobile robot, y and yaw) and carries the
   /// whole robot along.

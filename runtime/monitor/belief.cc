@@ -40,6 +40,11 @@ bool Belief::Filter::admits(const Words& state) const {
   for (std::size_t i = 1; i < mask.size(); ++i) {
     if (((state[i] ^ value[i]) & mask[i]) != 0) return false;
   }
+  for (const auto& set : one_of) {
+    bool has_one = false;
+    for (std::size_t i = 1; i < set.size(); ++i) has_one = has_one || (state[i] & set[i]) != 0;
+    if (!has_one) return false;
+  }
   return possible;
 }
 
@@ -103,9 +108,10 @@ std::vector<Literal> Belief::event_literals(const std::vector<EventId>& events) 
   return out;
 }
 
-Belief::Filter Belief::filter_of(const Observation& observed) const {
+Belief::Filter Belief::filter_of(const Observation& observed,
+                                 const std::vector<OneOfFluents>& one_of) const {
   PARALLAX_REQUIRE(observed.size() == fluent_bit_.size(), "an observation is about all fluents");
-  Filter out{Words(word_count_, 0), Words(word_count_, 0), true};
+  Filter out{Words(word_count_, 0), Words(word_count_, 0), true, {}};
   for (std::size_t f = 0; f < observed.size(); ++f) {
     if (observed[f] == 0) continue;
     const auto place = fluent_bit_[f];
@@ -116,7 +122,30 @@ Belief::Filter Belief::filter_of(const Observation& observed) const {
     set_bit(out.mask, *place);
     if (observed[f] > 0) set_bit(out.value, *place);
   }
+  for (const auto& fluents : one_of) {
+    Words set(word_count_, 0);
+    for (const auto fluent : fluents) {
+      // A fluent without a place never holds.
+      if (const auto place = fluent_bit_[fluent.index()]) set_bit(set, *place);
+    }
+    out.one_of.push_back(std::move(set));
+  }
   return out;
+}
+
+/// Adds an observation to what is known of one state. False: they contradict each other.
+bool Belief::add_known(const Filter& filter, Filter& known) const {
+  bool agrees = filter.possible;
+  for (std::size_t i = 1; i < word_count_; ++i) {
+    agrees = agrees && ((known.value[i] ^ filter.value[i]) & known.mask[i] & filter.mask[i]) == 0;
+    known.mask[i] |= filter.mask[i];
+    known.value[i] |= filter.value[i];
+  }
+  for (const auto& set : filter.one_of) {
+    const auto& sets = known.one_of;
+    if (std::find(sets.begin(), sets.end(), set) == sets.end()) known.one_of.push_back(set);
+  }
+  return agrees;
 }
 
 Admission Belief::give_up(const std::string& why) {
@@ -132,7 +161,8 @@ void Belief::take(std::vector<StateId> states) {
 }
 
 /// None: there are too many, or it was stopped.
-std::optional<std::vector<Belief::StateId>> Belief::initial_states(const Filter& known) {
+std::optional<std::vector<Belief::StateId>> Belief::initial_states(const Filter& known,
+                                                                   bool* some_admitted) {
   std::vector<Literal> assumptions;
   const auto& observed = windows_.layered.observed;
   for (std::size_t i = 0; i < observed.size(); ++i) {
@@ -141,15 +171,24 @@ std::optional<std::vector<Belief::StateId>> Belief::initial_states(const Filter&
     assumptions.push_back(bit(known.value, i) ? literal : ~literal);
   }
   const auto answer = start_.ask(assumptions, {options_.max_states});
-  if (!answer.is_complete()) return std::nullopt;
+  if (!answer.is_complete() && (some_admitted == nullptr || known.one_of.empty())) {
+    if (some_admitted != nullptr) *some_admitted = true;
+    return std::nullopt;
+  }
   std::vector<StateId> out;
   for (const auto& found : answer.found) {
     Words words(word_count_, 0);
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (found[i]) set_bit(words, i);
     }
+    if (!known.admits(words)) continue;
+    if (!answer.is_complete()) {
+      *some_admitted = true;
+      return std::nullopt;
+    }
     out.push_back(intern(std::move(words)));
   }
+  if (!answer.is_complete()) return std::nullopt;
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -201,10 +240,10 @@ void Belief::restart() {
   obstacle_.clear();
 }
 
-Admission Belief::observe(const Observation& observed) {
+Admission Belief::observe(const Observation& observed, const std::vector<OneOfFluents>& one_of) {
   if (!undecided_.empty()) return Admission::kUndecided;
   forget();
-  const auto filter = filter_of(observed);
+  const auto filter = filter_of(observed, one_of);
   if (!is_settled_ && !options_.unobserved.empty()) {
     // Something may have happened before: the observation is not of the start.
     const auto settled = settle();
@@ -212,23 +251,18 @@ Admission Belief::observe(const Observation& observed) {
   }
   if (!is_settled_) {
     // All that is seen before the first step is seen of one state.
-    if (!filter.possible) return Admission::kRefused;
     auto known = known_;
-    bool agrees = true;
-    for (std::size_t i = 1; i < word_count_; ++i) {
-      agrees = agrees && ((known.value[i] ^ filter.value[i]) & known.mask[i] & filter.mask[i]) == 0;
-      known.mask[i] |= filter.mask[i];
-      known.value[i] |= filter.value[i];
-    }
-    if (!agrees) return Admission::kRefused;
+    if (!add_known(filter, known)) return Admission::kRefused;
     if (known_is_open_ && known == known_) return Admission::kAdmitted;
-    auto states = initial_states(known);
+    bool some_admitted = false;
+    auto states = initial_states(known, &some_admitted);
     if (states && states->empty()) return Admission::kRefused;
     known_ = std::move(known);
     known_is_open_ = !states;
     if (!states) {
       if (options_.stop != nullptr && options_.stop->load()) return give_up("");
-      return Admission::kAdmitted;  // too many to be kept, so there are some
+      if (some_admitted) return Admission::kAdmitted;  // too many to be kept, so there are some
+      return give_up(fmt::format("more than {} initial states are possible", options_.max_states));
     }
     is_settled_ = true;
     take(*std::move(states));
@@ -243,6 +277,20 @@ Admission Belief::observe(const Observation& observed) {
   auto states = closed(std::move(left));
   if (!states) return give_up(obstacle_);
   return admit(*std::move(states));
+}
+
+bool Belief::agrees(const Observation& observed) {
+  if (!undecided_.empty()) return true;
+  const auto filter = filter_of(observed);
+  if (!is_settled_ && !options_.unobserved.empty() && settle() != Admission::kAdmitted) return true;
+  if (is_settled_) {
+    return std::any_of(possible_.begin(), possible_.end(),
+                       [&](StateId state) { return filter.admits(states_[state]); });
+  }
+  auto known = known_;
+  if (!add_known(filter, known)) return false;
+  const auto states = initial_states(known);
+  return !states || !states->empty();
 }
 
 Admission Belief::step(const ToldStep& told) {

@@ -32,6 +32,9 @@ struct BeliefOptions {
 /// Knowledge of the fluents, by FluentId: 1 holds, -1 does not, 0 is unknown.
 using Observation = std::vector<std::int8_t>;
 
+/// Fluents of which at least one holds, where it was not seen which.
+using OneOfFluents = std::vector<compiler::FluentId>;
+
 /// Report on one step: exactly these events happen, beside any of the unobserved ones. `succeeded`
 /// tells whether the perform of the plan did; without a perform or a plan it says nothing.
 struct ToldStep {
@@ -70,7 +73,10 @@ class Belief {
 
   /// Starts another log of the same model; known steps are kept.
   void restart();
-  Admission observe(const Observation& observed);
+  /// Takes what was seen: also, of each list of `one_of`, that at least one fluent holds.
+  Admission observe(const Observation& observed, const std::vector<OneOfFluents>& one_of = {});
+  /// Would the observation be admitted? It is not taken.
+  bool agrees(const Observation& observed);
   Admission step(const ToldStep& told);
   /// Would the step be admitted? Changes nothing.
   bool admits(const ToldStep& told);
@@ -98,7 +104,8 @@ class Belief {
   /// Condition of an observation on the words of a state.
   struct Filter {
     Words mask, value;
-    bool possible = true;  // false: it says that a fluent holds that never does
+    bool possible = true;       // false: it says that a fluent holds that never does
+    std::vector<Words> one_of;  // sets of bits of which one is set at least
     friend bool operator==(const Filter&, const Filter&) = default;
     bool admits(const Words& state) const;
   };
@@ -116,10 +123,13 @@ class Belief {
     return (std::uint64_t{plan} << 32U) | axioms;
   }
 
-  Filter filter_of(const Observation& observed) const;
+  Filter filter_of(const Observation& observed, const std::vector<OneOfFluents>& one_of = {}) const;
+  bool add_known(const Filter& filter, Filter& known) const;
   Admission give_up(const std::string& why);
   Admission settle();
-  std::optional<std::vector<StateId>> initial_states(const Filter& known);
+  /// `some_admitted`, where there are too many: one of those found agrees with all.
+  std::optional<std::vector<StateId>> initial_states(const Filter& known,
+                                                     bool* some_admitted = nullptr);
   std::optional<std::vector<StateId>> after(const std::vector<StateId>& states,
                                             const ToldStep& told);
   std::optional<std::vector<StateId>> closed(std::vector<StateId> states);

@@ -58,7 +58,7 @@ def hello(params):
     return {"protocol": 1, "name": "facts about a kitchen", "version": "1",
             "determinism": "bitwise", "seeds": True, "time_step": 0.0,
             "params": [{"name": name, "settable": True} for name in FACTS],
-            "actions": [{"name": name} for name in ACTIONS]}
+            "actions": [{"name": name, "instant": True} for name in ACTIONS]}
 
 
 def reset(params):

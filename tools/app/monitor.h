@@ -8,6 +8,7 @@
 
 #include "compiler/base/result.h"
 #include "compiler/base/word_table.h"
+#include "harness/monitor/outliers.h"
 #include "tools/app/context.h"
 #include "tools/app/recorded_run.h"
 #include "tools/app/watch.h"
@@ -35,6 +36,19 @@ struct UnendedAction {
   MonitorPlace place;
 };
 
+/// What a user allows a log to be off by.
+struct LogTolerance {
+  harness::ReadingTolerance reading;
+  harness::OutlierRate outliers;
+  bool is_exact() const { return reading.is_exact() && outliers.is_none(); }
+};
+
+/// An observation that was taken for an outlier.
+struct Outlier {
+  MonitorPlace place;
+  Refusal refusal;
+};
+
 struct MonitorResult {
   MonitorVerdict verdict = MonitorVerdict::kConsistent;
   std::string log;                    // as the user named it; of a recorded simulation "1.4"
@@ -46,9 +60,13 @@ struct MonitorResult {
   std::int64_t lines = 0, observations = 0, compared = 0, under_way = 0, events = 0;
   std::optional<std::size_t> states;  // possible at the end
   std::size_t most_states = 0;
-  std::vector<std::string> unreported;  // variables that the mapping asks for in vain
-  std::vector<std::string> hints;       // about those
-  std::vector<UnendedAction> unended;   // in the order in which they were begun
+  std::vector<std::string> unreported;    // variables that the mapping asks for in vain
+  std::vector<std::string> hints;         // about those
+  std::vector<UnendedAction> unended;     // in the order in which they were begun
+  std::optional<LogTolerance> tolerance;  // none: everything as it was reported
+  ToleratedReadings tolerated;
+  std::int64_t outlier_count = 0;
+  std::vector<Outlier> outliers;  // the first ones
   double wall_s = 0.0;
 };
 
@@ -59,10 +77,10 @@ bool take_admission(Watch& watch, runtime::Admission admission, const MonitorPla
 using MonitorProgress = std::function<void(const MonitorResult& so_far)>;
 
 /// Reads a log from an open file, line by line as it comes, up to the first line that the model
-/// does not admit. Reports kBadLogLine at the line that cannot be read; what was found up to there
-/// is the result.
+/// does not admit. `tolerance.reading` is what the watch was made with. Reports kBadLogLine at the
+/// line that cannot be read; what was found up to there is the result.
 MonitorResult monitor_log(Watch& watch, int fd, const std::string& name, Context& context,
-                          const MonitorProgress& progress = {});
+                          const LogTolerance& tolerance, const MonitorProgress& progress = {});
 
 /// Every simulation of a run folder that came to its end, in order. Reports what reading the
 /// journal reports, and kReplayImpossible where the scenario is not the one of the run.

@@ -35,6 +35,8 @@ constexpr std::int64_t kLinesPerLook = 256;
 constexpr std::chrono::milliseconds kProgressEvery(500);
 /// Number of variables that are named in the result.
 constexpr std::size_t kMostNamed = 20;
+/// Number of outliers that are kept.
+constexpr std::int64_t kMostOutliers = 20;
 
 /// The byte order mark, with which some editors begin a text.
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -47,11 +49,13 @@ bool is_plain(std::string_view line) {
 class LogWatcher {
  public:
   LogWatcher(Watch& watch, int fd, const std::string& name, Context& context,
-             const MonitorProgress& progress)
+             const LogTolerance& tolerance, const MonitorProgress& progress)
       : watch_(watch),
         source_(fd, context.stop()),
         context_(context),
         progress_(progress),
+        tolerance_(tolerance),
+        outliers_(tolerance.outliers),
         reported_(watch.reader().variables().size(), false) {
     result_.log = name;
     for (std::uint32_t e = 0; e < watch.symbols().event_count(); ++e) {
@@ -79,6 +83,10 @@ class LogWatcher {
     if (!is_over_ && !result_.failed && !result_.interrupted) end();
     result_.lines = source_.number();
     result_.compared = watch_.compared() - compared_before;
+    if (!tolerance_.is_exact()) {
+      result_.tolerance = tolerance_;
+      result_.tolerated = watch_.tolerated();
+    }
     finish();
     result_.wall_s = std::chrono::duration<double>(Clock::now() - begun).count();
     return std::move(result_);
@@ -187,6 +195,7 @@ class LogWatcher {
     std::sort(told.events.begin(), told.events.end());
     told.events.erase(std::unique(told.events.begin(), told.events.end()), told.events.end());
     told.succeeded = entry_.ok;
+    if (!end_stretch()) return false;
     ++result_.events;
     unsettled_.reset();
     return note(watch_.step(told), here());
@@ -202,12 +211,49 @@ class LogWatcher {
       return true;
     }
     const bool at_start = result_.events == 0;
+    const auto admission = watch_.observe(entry_.values, at_start);
+    const bool is_outlier = admission == Admission::kRefused && !tolerance_.outliers.is_none();
+    if (is_outlier) return take_outlier();
+    if (watch_.last_was_compared()) outliers_.agreed();
     if (watch_.compares_at_rest() && !at_start) unsettled_ = {here(), entry_.values};
-    return note(watch_.observe(entry_.values, at_start), here());
+    return note(admission, here());
+  }
+
+  /// Passes over an observation that no possible state agrees with. False: there are too many.
+  bool take_outlier() {
+    ++result_.outlier_count;
+    const bool is_allowed = outliers_.disagreed();
+    if (outliers_.is_first_of_stretch()) stretch_begin_ = {here(), watch_.refusal()};
+    if (static_cast<std::int64_t>(result_.outliers.size()) < kMostOutliers) {
+      result_.outliers.push_back({here(), watch_.refusal()});
+    }
+    return is_allowed || refuse_stretch();
+  }
+
+  bool end_stretch() {
+    if (!outliers_.end_stretch()) return refuse_stretch();
+    count_before_stretch_ = result_.outlier_count;
+    return true;
+  }
+
+  /// What disagrees since the last step is no outlier. Where it began the log is inconsistent.
+  bool refuse_stretch() {
+    is_over_ = true;
+    take_size(watch_, result_);
+    result_.verdict = MonitorVerdict::kInconsistent;
+    result_.first = stretch_begin_.place;
+    result_.refusal = stretch_begin_.refusal;
+    const auto is_of_stretch = [&](const Outlier& outlier) {
+      return outlier.place.line >= stretch_begin_.place.line;
+    };
+    std::erase_if(result_.outliers, is_of_stretch);
+    result_.outlier_count = count_before_stretch_;
+    return false;
   }
 
   /// Compares the fluents that are compared at rest only with the last observation.
   void end() {
+    if (!end_stretch()) return;
     if (!under_way_.empty()) return note_unended();
     if (!unsettled_) return;
     auto place = unsettled_->first;
@@ -259,8 +305,9 @@ class LogWatcher {
     if (result_.verdict != MonitorVerdict::kConsistent) return;
     if (result_.failed) {
       result_.verdict = MonitorVerdict::kUndecided;
-      result_.undecided_because = fmt::format(
-          "line {} cannot be read; what comes before it is consistent", source_.number());
+      result_.undecided_because =
+          fmt::format("line {} cannot be read; what comes before it is consistent{}",
+                      source_.number(), result_.outlier_count > 0 ? " but for outliers" : "");
     } else if (result_.interrupted) {
       result_.verdict = MonitorVerdict::kUndecided;
       result_.undecided_because = "it was stopped";
@@ -283,6 +330,10 @@ class LogWatcher {
   LineSource source_;
   Context& context_;
   const MonitorProgress& progress_;
+  LogTolerance tolerance_;
+  harness::OutlierCount outliers_;
+  Outlier stretch_begin_;                  // the first outlier since the last step
+  std::int64_t count_before_stretch_ = 0;  // outliers before that step
   MonitorResult result_;
   std::unordered_map<std::string, EventId> events_;  // for look-up only
   std::optional<Form> form_;
@@ -321,8 +372,8 @@ bool take_admission(Watch& watch, Admission admission, const MonitorPlace& place
 }
 
 MonitorResult monitor_log(Watch& watch, int fd, const std::string& name, Context& context,
-                          const MonitorProgress& progress) {
-  return LogWatcher(watch, fd, name, context, progress).run();
+                          const LogTolerance& tolerance, const MonitorProgress& progress) {
+  return LogWatcher(watch, fd, name, context, tolerance, progress).run();
 }
 
 }  // namespace parallax::tools

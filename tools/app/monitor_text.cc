@@ -15,6 +15,7 @@ using OrderedJson = nlohmann::ordered_json;
 
 /// Number of fluents and plan steps that are spelled out in the text.
 constexpr std::size_t kMostShown = 8;
+constexpr std::size_t kMostShownOfOutlier = 2;
 
 std::string value_text(const harness::Value& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return fmt::format("\"{}\"", *text);
@@ -73,6 +74,52 @@ std::string refusal_text(const MonitorResult& result) {
   return out;
 }
 
+/// Says how a log was read more leniently than it is written, and how often that counted.
+std::string tolerance_text(const MonitorResult& result) {
+  if (!result.tolerance) return {};
+  const auto& [reading, rate] = *result.tolerance;
+  std::string out;
+  if (!reading.is_exact()) {
+    const auto count = result.tolerated.near_border;
+    out += fmt::format("tolerated: {} within {:g} m or {:g} rad of a border",
+                       base::counted(count, "observation"), reading.m, reading.rad);
+    if (count > 0) {
+      out +=
+          fmt::format(", where both sides are possible; {} agree{} with the model only so",
+                      result.tolerated.only_within, result.tolerated.only_within == 1 ? "s" : "");
+    }
+    out += '\n';
+  }
+  if (rate.is_none()) return out;
+  out += fmt::format("not counted: {} of {} compared, as {} of {} in a row may be wrong\n",
+                     base::counted(result.outlier_count, "outlier"), result.compared, rate.at_most,
+                     rate.of);
+  for (const auto& outlier : result.outliers) {
+    out += fmt::format("  line {}, t = {:.6g} s\n", outlier.place.line, outlier.place.t);
+    for (std::size_t i = 0; i < outlier.refusal.fluents.size() && i < kMostShownOfOutlier; ++i) {
+      out += "  " + fluent_text(outlier.refusal.fluents[i]);
+    }
+  }
+  const auto unnamed = result.outlier_count - std::ssize(result.outliers);
+  if (unnamed > 0) out += fmt::format("  and {} more\n", unnamed);
+  return out;
+}
+
+OrderedJson tolerance_json(const MonitorResult& result) {
+  const auto& [reading, rate] = *result.tolerance;
+  OrderedJson lines = OrderedJson::array();
+  for (const auto& outlier : result.outliers) lines.push_back(outlier.place.line);
+  OrderedJson out{{"tolerance_m", reading.m},
+                  {"tolerance_rad", reading.rad},
+                  {"near_border", result.tolerated.near_border},
+                  {"only_within_tolerance", result.tolerated.only_within}};
+  out["outliers"] = OrderedJson{{"at_most", rate.at_most},
+                                {"of", rate.of},
+                                {"count", result.outlier_count},
+                                {"first_lines", std::move(lines)}};
+  return out;
+}
+
 std::string first_text(const MonitorResult& result) {
   if (!result.first) return {};
   if (result.verdict == MonitorVerdict::kInconsistent) return refusal_text(result);
@@ -120,6 +167,7 @@ OrderedJson fields(const MonitorResult& result) {
                   {"events", result.events}};
   out["states"] = OrderedJson{{"most", result.most_states}};
   if (result.states) out["states"]["last"] = *result.states;
+  if (result.tolerance) out["tolerated"] = tolerance_json(result);
   if (result.verdict == MonitorVerdict::kUndecided) out["because"] = result.undecided_because;
   if (result.first) out["first"] = first_json(result);
   return out;
@@ -148,6 +196,7 @@ std::string monitor_text(const MonitorResult& result) {
                      base::counted(result.most_states, "state"));
   if (result.states) out += fmt::format(", {} at last", *result.states);
   out += "\n";
+  out += tolerance_text(result);
   for (const auto& action : result.unended) {
     out += fmt::format("not ended: {} (line {}, t = {:.6g} s)\n", action.event, action.place.line,
                        action.place.t);

@@ -151,6 +151,7 @@ base::Result<std::unique_ptr<Watch>> Watch::make(const ScenarioModel& loaded,
       out->only_at_rest_ ||
       std::any_of(mapping.bindings().begin(), mapping.bindings().end(),
                   [](const harness::FluentBinding& binding) { return binding.at_rest_only; });
+  out->tolerance_ = options.tolerance;
   runtime::BeliefOptions belief;
   belief.max_states = options.max_states;
   belief.remembered = 10 * options.max_states;
@@ -169,21 +170,46 @@ std::vector<std::string> Watch::event_names() const {
 void Watch::restart() {
   belief_->restart();
   refusal_ = {};
+  tolerated_ = {};
+  last_compared_ = false;
+}
+
+runtime::Observation Watch::observation_of(const harness::SeenState& seen) const {
+  runtime::Observation out(seen.fluents.size(), 0);
+  for (std::size_t i = 0; i < seen.fluents.size(); ++i) {
+    out[fluents_->id(i).index()] = seen.fluents[i];
+  }
+  return out;
 }
 
 Admission Watch::observe(const harness::ReportedValues& values, bool at_rest) {
+  last_compared_ = false;
   if (only_at_rest_ && !at_rest) return Admission::kAdmitted;
-  reader_->read(values, at_rest, seen_);
-  observation_.assign(seen_.fluents.size(), 0);
-  bool says_something = seen_.in_no_state();
-  for (std::size_t i = 0; i < seen_.fluents.size(); ++i) {
-    observation_[fluents_->id(i).index()] = seen_.fluents[i];
-    says_something = says_something || seen_.fluents[i] != 0;
-  }
-  if (says_something) ++compared_;
+  reader_->read(values, at_rest, seen_, tolerance_);
+  observation_ = observation_of(seen_);
+  last_compared_ = seen_.in_no_state() || !seen_.one_of.empty() ||
+                   std::any_of(seen_.fluents.begin(), seen_.fluents.end(),
+                               [](std::int8_t known) { return known != 0; });
+  if (last_compared_) ++compared_;
   if (!belief_->undecided_because().empty()) return Admission::kUndecided;
-  const auto admission = seen_.in_no_state() ? Admission::kRefused : belief_->observe(observation_);
-  if (admission == Admission::kRefused) explain(values);
+  bool exact_agrees = true;
+  if (seen_.near_border) {
+    reader_->read(values, at_rest, exact_);
+    exact_agrees = !exact_.in_no_state() && belief_->agrees(observation_of(exact_));
+  }
+  std::vector<runtime::OneOfFluents> one_of;
+  for (const auto& numbers : seen_.one_of) {
+    auto& fluents = one_of.emplace_back();
+    for (const auto number : numbers) fluents.push_back(fluents_->id(number));
+  }
+  const auto admission =
+      seen_.in_no_state() ? Admission::kRefused : belief_->observe(observation_, one_of);
+  if (admission == Admission::kRefused) {
+    explain(values, at_rest);
+  } else if (seen_.near_border) {
+    ++tolerated_.near_border;
+    if (!exact_agrees) ++tolerated_.only_within;
+  }
   return admission;
 }
 
@@ -197,8 +223,18 @@ RefusedFluent Watch::refused(std::size_t number, const harness::ReportedValues& 
   return out;
 }
 
-void Watch::explain(const harness::ReportedValues& values) {
+/// What is refused is refused without the tolerance as well; that says more where it leaves open
+/// which of several fluents it is.
+void Watch::explain(const harness::ReportedValues& values, bool at_rest) {
   refusal_ = {};
+  explain_seen(values);
+  if (!refusal_.fluents.empty() || tolerance_.is_exact()) return;
+  reader_->read(values, at_rest, seen_);
+  observation_ = observation_of(seen_);
+  explain_seen(values);
+}
+
+void Watch::explain_seen(const harness::ReportedValues& values) {
   for (const auto number : seen_.neither) {
     refusal_.fluents.push_back(refused(number, values));
     refusal_.fluents.back().neither = true;

@@ -22,6 +22,13 @@ struct WatchOptions {
   std::size_t max_states = 20'000;
   std::vector<std::string> unobserved;  // event symbols, besides those of the scenario
   std::optional<harness::Comparison> comparison = std::nullopt;  // none: as the scenario says
+  harness::ReadingTolerance tolerance;
+};
+
+/// Observations that a tolerance had a part in.
+struct ToleratedReadings {
+  std::int64_t near_border = 0;  // a fluent was within the tolerance of a border
+  std::int64_t only_within = 0;  // admitted, but would not have been as they were reported
 };
 
 /// A fluent for which an observation was refused.
@@ -59,6 +66,10 @@ class Watch {
   void restart();
   /// `at_rest`: at the start or at the end.
   runtime::Admission observe(const harness::ReportedValues& values, bool at_rest);
+  /// Did the last observation mention a fluent, so that it was compared?
+  bool last_was_compared() const { return last_compared_; }
+  /// What the tolerance did so far, in compared observations.
+  const ToleratedReadings& tolerated() const { return tolerated_; }
   runtime::Admission step(const runtime::ToldStep& told);
   const runtime::Belief& belief() const { return *belief_; }
   /// The last refusal.
@@ -68,7 +79,9 @@ class Watch {
 
  private:
   Watch() = default;
-  void explain(const harness::ReportedValues& values);
+  void explain(const harness::ReportedValues& values, bool at_rest);
+  void explain_seen(const harness::ReportedValues& values);
+  runtime::Observation observation_of(const harness::SeenState& seen) const;
   RefusedFluent refused(std::size_t number, const harness::ReportedValues& values) const;
 
   const ScenarioModel* loaded_ = nullptr;
@@ -80,8 +93,11 @@ class Watch {
   std::unique_ptr<runtime::StepWindows> windows_;
   std::unique_ptr<runtime::Belief> belief_;
   bool only_at_rest_ = false, compares_at_rest_ = false;
-  harness::SeenState seen_;
+  harness::ReadingTolerance tolerance_;
+  harness::SeenState seen_, exact_;
   runtime::Observation observation_;
+  ToleratedReadings tolerated_;
+  bool last_compared_ = false;
   Refusal refusal_;
   std::int64_t compared_ = 0;
 };

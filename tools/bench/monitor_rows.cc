@@ -100,7 +100,7 @@ void measure_monitor(Bench& bench) {
     }
     const base::Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     Stopwatch watching;
-    const auto result = monitor_log(**watch, file.get(), path, context);
+    const auto result = monitor_log(**watch, file.get(), path, context, {});
     const double seconds = 1e-3 * watching.lap_ms();
     bench.add(
         {"",

@@ -26,7 +26,8 @@ constexpr std::uint64_t kDrawSeed = 1;
 struct AdapterCheckOptions {
   std::vector<std::string> command, actions;
   std::string scenario;
-  double request_limit_s = 0.0;  // 0: as the scenario or the protocol has it
+  // 0: as the scenario or the protocol has it
+  double request_limit_s = 0.0, start_limit_s = 0.0;
   double tolerance = 1e-3;
 };
 
@@ -62,14 +63,17 @@ base::Result<harness::TriedAction> tried_action(const std::string& text,
   return action;
 }
 
-void bound_all(double limit_s, harness::ProcessOptions& process) {
-  if (limit_s <= 0.0) return;
-  for (auto* limit : {&process.hello_timeout_s, &process.reset_timeout_s,
-                      &process.observe_timeout_s, &process.close_timeout_s}) {
-    *limit = std::min(*limit, limit_s);
+/// Limits of the requests as the options have them, longer or shorter than the scenario's.
+void set_limits(const AdapterCheckOptions& options, harness::ProcessOptions& process) {
+  if (options.request_limit_s > 0.0) {
+    for (auto* limit : {&process.hello_timeout_s, &process.reset_timeout_s, &process.act_timeout_s,
+                        &process.observe_timeout_s, &process.close_timeout_s}) {
+      *limit = options.request_limit_s;
+    }
   }
-  process.act_timeout_s =
-      process.act_timeout_s > 0.0 ? std::min(process.act_timeout_s, limit_s) : limit_s;
+  if (options.start_limit_s > 0.0) {
+    process.hello_timeout_s = process.reset_timeout_s = options.start_limit_s;
+  }
 }
 
 /// At most so many initial states of the trace are tried, with a start each.
@@ -144,7 +148,7 @@ int check_with_scenario(const AdapterCheckOptions& options, harness::Conformance
     return 0;
   }
   static_cast<harness::ProcessLimits&>(check.process) = scenario.simulator;
-  bound_all(options.request_limit_s, check.process);
+  set_limits(options, check.process);
   if (check.process.command.empty()) check.process.command = scenario.simulator.command;
   if (check.process.command.empty()) {
     sink.error_about(codes::kUsage, options.scenario,
@@ -188,7 +192,7 @@ int run_adapter_check(const AdapterCheckOptions& options, Invocation& invocation
                                   "name the command of a simulator, or a --scenario");
     return 0;
   }
-  bound_all(options.request_limit_s, check.process);
+  set_limits(options, check.process);
   return tell(check, invocation);
 }
 
@@ -227,8 +231,12 @@ Command adapter_check_command() {
       .show_default();
   command
       .option("--request-limit", options->request_limit_s,
-              "Longest time of a request, in seconds of wall time")
+              "Longest time of each request, in seconds of wall time; may lengthen limits")
       .details("Default: as the scenario says, or docs/reference/protocol.md.")
+      .check(FiniteNumber{0.01, 1e5});
+  command
+      .option("--start-limit", options->start_limit_s,
+              "The same for `hello` and `reset` alone, for worlds that take long to load")
       .check(FiniteNumber{0.01, 1e5});
   return command_of(std::move(command), options, run_adapter_check);
 }

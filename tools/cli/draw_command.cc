@@ -288,7 +288,15 @@ base::Result<Album> album_of_run(const harness::RecordedRun& run, const harness:
                                  const DrawnParting& parting, const std::string& folder,
                                  Invocation& invocation) {
   std::string why;
-  const auto recording = recording_to_draw(folder, run, scenario.world, why);
+  const bool is_external = !scenario.simulator.is_built_in();
+  const auto recording =
+      recording_to_draw(folder, run, is_external ? nullptr : &scenario.world, why);
+  if (!recording && is_external) {
+    return invocation.sink().error_about(
+        codes::kUsage, folder,
+        fmt::format("simulation {}.{} cannot be drawn: its simulator is another program, and {}",
+                    run.id.trace, run.id.sample, why));
+  }
   if (!recording) {
     invocation.remark(fmt::format("simulation {}.{} is simulated again, without its recording: {}",
                                   run.id.trace, run.id.sample, why));
@@ -366,11 +374,6 @@ int draw_run(const DrawOptions& options, Invocation& invocation) {
   const auto trace = check_recorded_run(*loaded, *run, invocation);
   if (!trace) return 0;
   const auto& scenario = loaded->scenario;
-  if (!scenario.simulator.is_built_in()) {
-    sink.error_about(codes::kUsage, options.what,
-                     "only worlds of the built-in simulator can be drawn");
-    return 0;
-  }
   const fs::path folder =
       options.out.empty() ? fs::path(options.what) / "pictures" : fs::path(options.out);
   if (options.out.empty() && !base::lies_below(folder, options.what)) {  // by a link

@@ -22,6 +22,8 @@ struct MonitorOptions {
   std::vector<std::string> unobserved;
   bool no_plan = false;
   std::int64_t max_states = 20'000;
+  LogTolerance tolerance;
+  std::string outliers;
 };
 
 int exit_code(MonitorVerdict verdict) {
@@ -41,7 +43,24 @@ WatchOptions watch_options(const MonitorOptions& options) {
   out.with_plan = !options.no_plan;
   out.max_states = static_cast<std::size_t>(options.max_states);
   out.unobserved = options.unobserved;
+  out.tolerance = options.tolerance.reading;
   return out;
+}
+
+/// The tolerance that the options give; none: reported.
+std::optional<LogTolerance> log_tolerance(const MonitorOptions& options, Invocation& invocation) {
+  auto out = options.tolerance;
+  if (options.outliers.empty()) return out;
+  const auto rate = harness::read_outlier_rate(options.outliers);
+  if (rate) {
+    out.outliers = *rate;
+    return out;
+  }
+  invocation.sink().error_about(
+      codes::kUsage, "",
+      fmt::format("`--outliers {}` is not `N/OF` with less than half of OF, such as `2/100`",
+                  options.outliers));
+  return std::nullopt;
 }
 
 int check_run(const MonitorOptions& options, Invocation& invocation) {
@@ -80,9 +99,17 @@ base::Result<base::Descriptor> open_log(const std::string& name, base::Diagnosti
 
 int monitor(const MonitorOptions& options, Invocation& invocation) {
   if (!expect_kind(options.scenario, {FileKind::kScenario}, "a scenario", invocation)) return 0;
+  const auto tolerance = log_tolerance(options, invocation);
+  if (!tolerance) return 0;
   std::error_code error;
   if (options.log != "-" && std::filesystem::is_directory(options.log, error)) {
     if (!expect_kind(options.log, {FileKind::kRun}, "a log or the folder of a run", invocation)) {
+      return 0;
+    }
+    if (!tolerance->is_exact()) {
+      invocation.sink().error_about(codes::kUsage, "",
+                                    "--tolerance-m, --tolerance-rad and --outliers are for logs; "
+                                    "what a run folder has is exact");
       return 0;
     }
     return check_run(options, invocation);
@@ -95,7 +122,7 @@ int monitor(const MonitorOptions& options, Invocation& invocation) {
   if (!watch) return 0;
   const auto progress = progress_of(invocation);
   const auto name = options.log == "-" ? std::string("<stdin>") : options.log;
-  const auto result = monitor_log(**watch, file->get(), name, invocation, progress);
+  const auto result = monitor_log(**watch, file->get(), name, invocation, *tolerance, progress);
   if (progress) clear_progress();
   if (invocation.options().json) {
     invocation.document(monitor_json(result, options.scenario));
@@ -120,6 +147,7 @@ Command monitor_command() {
       "  parallax monitor kitchen.yaml robot.jsonl\n"
       "  tail -f robot.jsonl | parallax monitor kitchen.yaml -\n"
       "  parallax monitor kitchen.yaml log.csv --no-plan --unobserved Slip\n"
+      "  parallax monitor kitchen.yaml robot.jsonl --tolerance-m 0.005 --outliers 1/100\n"
       "  parallax monitor kitchen.yaml out/kitchen      every simulation of a run\n"
       "Lines of a log: {\"t\": 1.5, \"event\": \"Go(bTable)\", \"outcome\": \"ok\"}\n"
       "                {\"t\": 1.6, \"state\": {\"robot.x\": 0.1}}\n"
@@ -140,6 +168,18 @@ Command monitor_command() {
               "States that may be possible at once; with more the answer is `undecided`")
       .check(WholeNumber{1, 1'000'000})
       .show_default();
+  command
+      .option("--tolerance-m", options->tolerance.reading.m,
+              "A reported length may be off by so much [m]; the verdict counts where it mattered")
+      .check(FiniteNumber{0.0, 10.0});
+  command
+      .option("--tolerance-rad", options->tolerance.reading.rad,
+              "The same for yaw, roll and pitch [rad]")
+      .check(FiniteNumber{0.0, 1.0});
+  command
+      .option("--outliers", options->outliers,
+              "At most N of OF compared observations in a row may be wrong; they are listed")
+      .named_value("N/OF");
   return command_of(std::move(command), options, monitor);
 }
 

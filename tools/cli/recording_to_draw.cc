@@ -31,7 +31,7 @@ bool agrees(const harness::Recording& recording, const harness::SampleRecord& re
 
 std::optional<harness::Recording> recording_to_draw(const std::string& folder,
                                                     const harness::RecordedRun& run,
-                                                    const harness::WorldSpec& spec,
+                                                    const harness::WorldSpec* spec,
                                                     std::string& why) {
   auto recording = harness::find_recording(folder, run.id.trace, run.id.sample, why);
   if (!recording) return std::nullopt;
@@ -40,8 +40,8 @@ std::optional<harness::Recording> recording_to_draw(const std::string& folder,
     why = "motion is missing: " + recording->missing;
   } else if (!agrees(*recording, run.record)) {
     why = "it says other things than the journal";
-  } else {
-    why = harness::unlike_world(*recording, spec);
+  } else if (spec != nullptr) {
+    why = harness::unlike_world(*recording, *spec);
   }
   if (!why.empty()) return std::nullopt;
   return recording;

@@ -9,11 +9,11 @@
 
 namespace parallax::tools {
 
-/// The recording of a simulation, if it can replace it: it is whole, of this world, and agrees with
-/// the journal. None, and `why`, otherwise.
+/// The recording of a simulation, if it can replace it: it is whole, of this world (null: of
+/// another simulator's), and agrees with the journal. None, and `why`, otherwise.
 std::optional<harness::Recording> recording_to_draw(const std::string& folder,
                                                     const harness::RecordedRun& run,
-                                                    const harness::WorldSpec& spec,
+                                                    const harness::WorldSpec* spec,
                                                     std::string& why);
 
 }  // namespace parallax::tools

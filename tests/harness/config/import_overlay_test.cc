@@ -297,7 +297,7 @@ TEST_CASE("only a robot in URDF can be `fixed`, and nothing else is proposed") {
         workspace.load(scenario_with("  " + key + ": {file: a.xml, fixd: true}\n")).has_value());
     REQUIRE(workspace.sink.sorted().size() == 1);
     REQUIRE(workspace.sink.sorted()[0].notes.size() == 1);
-    CHECK(workspace.sink.sorted()[0].notes[0].text == "known keys: file, at_m, yaw_rad");
+    CHECK(workspace.sink.sorted()[0].notes[0].text == "known keys: file, at_m, yaw_rad, positions");
   }
 }
 

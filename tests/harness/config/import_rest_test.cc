@@ -127,21 +127,29 @@ TEST_CASE("a model that stands in no world stands where it says") {
   CHECK(alone.bodies[0].spec.p_WB.x() == doctest::Approx(1.0 + 0.5 * std::cos(0.5)));
 }
 
-TEST_CASE("an inertia that no body can have is told at its link") {
+TEST_CASE("an inertia that no body can have is mended, and told at its link") {
   if (!reads_sdf()) return;
   std::string text = kSdfModel;
   const auto at = text.find("<izz>1", text.find("name='b'"));
   const auto world = imported(true, text.replace(at, 6, "<izz>9"));
-  REQUIRE(world.fault.has_value());
-  CHECK(world.fault->offset == text.find("<link name='b'"));
+  REQUIRE_FALSE(world.fault.has_value());
+  const auto told = std::find_if(
+      world.left_out.begin(), world.left_out.end(),
+      [](const LeftOut& one) { return one.what.starts_with("inertias that no body has"); });
+  REQUIRE(told != world.left_out.end());
+  CHECK(told->offset == text.find("<link name='b'"));
 }
 
-TEST_CASE("a root without mass may be held in the world, and may not be free") {
+TEST_CASE("a root without mass stands fast, which is told unless it is held in the world") {
   if (!reads_urdf()) return;
   std::string text = kUrdfModel;
   const auto begin = text.find("<inertial>"), end = text.find("</inertial>") + 11;
   text.erase(begin, end - begin);
-  CHECK(imported(false, text).fault.has_value());
+  const auto free = imported(false, text);
+  REQUIRE_FALSE(free.fault.has_value());
+  CHECK(std::any_of(free.left_out.begin(), free.left_out.end(), [](const LeftOut& one) {
+    return one.what == "motions of roots without mass (they stand fast)" && one.first == "a";
+  }));
   ImportInput input;
   input.text = text;
   input.fixed = true;

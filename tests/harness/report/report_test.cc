@@ -166,9 +166,14 @@ TEST_CASE("the summary says first what parted them, then where and how often") {
   found.cause = {"PickUp(): box-lost", "box-lost: nothing in the gripper"};
   found.first_divergence = 2;
   found.first = found.fluents;
-  CHECK(unwrapped(summary()).starts_with(
-      "discrepancy, not confirmed: PickUp() fails (nothing between "
-      "the pads \\u001b[31m), and the model says that it succeeds "));
+  // The headline is one line, and the reason stands below it where that is long.
+  CHECK(summary().starts_with(
+      "discrepancy, not confirmed: PickUp() fails, and the model says that it succeeds\n"
+      "  reason    nothing between the pads \\u001b[31m\n"));
+  found.record.outcomes[1].reason = "box-lost: " + std::string(200, 'x') + " twice";
+  CHECK(summary().starts_with(
+      "discrepancy, not confirmed: PickUp() fails (box-lost), and the model says that it succeeds\n"
+      "  reason    box-lost:\n            xxx"));
   CHECK(summary().find("  *  1  PickUp()  fetch.lisp:10  failed: nothing between the pads") !=
         std::string::npos);
   CHECK(summary().find("and so at the end") == std::string::npos);

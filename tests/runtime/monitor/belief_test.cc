@@ -27,7 +27,13 @@ std::unique_ptr<StepWindows> windows_of(const compiler::CompiledModel& model,
 }
 
 Admission feed(Belief& belief, const LogItem& item) {
-  return item.observed ? belief.observe(*item.observed) : belief.step(item.told);
+  if (!item.observed) return belief.step(item.told);
+  // Asking beforehand changes nothing, and says the same where nothing is left open.
+  const bool agrees = belief.agrees(*item.observed);
+  const auto admission = belief.observe(*item.observed, item.one_of);
+  if (item.one_of.empty()) CHECK(agrees == (admission != Admission::kRefused));
+  if (admission == Admission::kAdmitted) CHECK(agrees);
+  return admission;
 }
 
 struct Seen {

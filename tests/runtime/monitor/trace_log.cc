@@ -69,6 +69,14 @@ bool agrees(const PlainTrace& trace, std::size_t p, const runtime::Observation& 
   return true;
 }
 
+bool has_one_of_each(const PlainTrace& trace, std::size_t p,
+                     const std::vector<runtime::OneOfFluents>& one_of) {
+  return std::all_of(one_of.begin(), one_of.end(), [&](const auto& fluents) {
+    return std::any_of(fluents.begin(), fluents.end(),
+                       [&](FluentId fluent) { return trace.holds[p][fluent.index()]; });
+  });
+}
+
 /// The lines that the trace goes with and ends after, as flags by number of lines.
 void note_lines(const PlainTrace& trace, const Log& log, const std::vector<bool>& unobserved,
                 std::vector<bool>& reached) {
@@ -86,7 +94,7 @@ void note_lines(const PlainTrace& trace, const Log& log, const std::vector<bool>
     for (std::size_t p = 0; p <= n; ++p) {
       if (!at[p]) continue;
       if (log[i].observed) {
-        next[p] = agrees(trace, p, *log[i].observed);
+        next[p] = agrees(trace, p, *log[i].observed) && has_one_of_each(trace, p, log[i].one_of);
       } else if (p < n && is_told(trace, p, log[i].told, unobserved)) {
         next[p + 1] = true;
       }
@@ -168,6 +176,12 @@ Log random_log(const CompiledModel& model, const std::vector<PlainTrace>& traces
   for (std::size_t t = 0; t < trace.holds.size(); ++t) {
     for (auto seen = random.below(3); seen > 0; --seen) {
       log.push_back({partly(trace.holds[t], random), {}});
+      // Two or three fluents of which it was not seen which one holds; sometimes none does.
+      if (model.fluents.size() < 2 || !random.chance(30)) continue;
+      auto& set = log.back().one_of.emplace_back();
+      for (std::size_t n = 2 + random.below(2); n > 0; --n) {
+        set.emplace_back(static_cast<std::uint32_t>(random.below(model.fluents.size())));
+      }
     }
     if (t == trace.happens.size()) break;
     if (is_untold(trace, t, unobserved) && random.chance(60)) continue;

@@ -26,6 +26,7 @@ std::optional<std::vector<PlainTrace>> plain_traces(const compiler::CompiledMode
 struct LogItem {
   std::optional<runtime::Observation> observed;
   runtime::ToldStep told;
+  std::vector<runtime::OneOfFluents> one_of{};  // of an observation
 };
 using Log = std::vector<LogItem>;
 

@@ -114,8 +114,8 @@ class _Param:
 
 
 class _Action:
-    def __init__(self, name, function, required, optional):
-        self.name, self.function = name, function
+    def __init__(self, name, function, required, optional, instant):
+        self.name, self.function, self.instant = name, function, instant
         self.required, self.optional = dict(required), dict(optional)
         keywords = [key.replace(".", "_") for key in self.arguments()]
         if len(set(keywords)) != len(keywords):
@@ -135,7 +135,10 @@ class _Action:
             args.append(said)
         for name, default in self.optional.items():
             args.append({"name": name, "required": False, "example": default})
-        return {"name": self.name, "args": args}
+        return dict(self.short(), args=args)
+
+    def short(self):
+        return {"name": self.name, "instant": True} if self.instant else {"name": self.name}
 
     def keywords(self, given):
         for name in given:
@@ -197,14 +200,16 @@ class Adapter:
         self._observe = function
         return function
 
-    def action(self, name, required=(), optional=()):
+    def action(self, name, required=(), optional=(), instant=False):
         """function(**arguments), dots in their names as underscores (`target.x`: target_x).
-        `required` maps names to units, or to (unit, example); `optional` to defaults."""
+        `required` maps names to units, or to (unit, example); `optional` to defaults. An
+        `instant` action takes no simulated time."""
 
         def declare(function):
             if name in self._actions:
                 raise ValueError("the action `%s` is declared twice" % name)
-            self._actions[name] = _Action(name, function, required or {}, optional or {})
+            self._actions[name] = _Action(
+                name, function, required or {}, optional or {}, instant)
             return function
 
         return declare
@@ -346,7 +351,7 @@ class Adapter:
         if self._scene:
             said["pose"] = self._scene
         said["params"] = [param.short() for param in self._params.values()]
-        said["actions"] = [{"name": name} for name in self._actions]
+        said["actions"] = [action.short() for action in self._actions.values()]
         return said
 
     def _described(self):
