@@ -43,7 +43,7 @@ PARALLAX_API std::string version();
 /// A message about a text or a file, as `parallax check` prints it.
 struct Message {
   bool is_error = true;  // else a warning
-  std::string code;      // "E2104": docs/diagnostics.md
+  std::string code;      // "E2104": docs/reference/diagnostics.md
   std::string text;
   std::string path;          // empty: no file
   int line = 0, column = 0;  // from 1; 0: no place
