@@ -1,4 +1,4 @@
-// What files may say and a simulator cannot have.
+// Adapts what files may say to what a simulator can have.
 //
 // Positions: the tree is walked from its roots, and everything that hangs on a joint is moved by
 // the joint's position. The joint's own angle counts from there on, so its stops move the other

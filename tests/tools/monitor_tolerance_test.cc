@@ -38,7 +38,7 @@ TEST_CASE("a sample a millimetre outside of a cell is tolerated where that is as
   CHECK(result.at("verdict") == "consistent");
   CHECK(result.at("compared") == 4);
   CHECK(result.at("tolerated").at("tolerance_m") == 0.005);
-  // Of 0.999 and 1.001 the first one alone needs it.
+  // 0.999 needs it, and 1.001 does not.
   CHECK(result.at("tolerated").at("near_border") == 4);
   CHECK(result.at("tolerated").at("only_within_tolerance") == 3);
   const auto text =

@@ -36,7 +36,7 @@ struct UnendedAction {
   MonitorPlace place;
 };
 
-/// What a user allows a log to be off by.
+/// Errors of a log that a user allows.
 struct LogTolerance {
   harness::ReadingTolerance reading;
   harness::OutlierRate outliers;

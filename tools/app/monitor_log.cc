@@ -236,7 +236,8 @@ class LogWatcher {
     return true;
   }
 
-  /// What disagrees since the last step is no outlier. Where it began the log is inconsistent.
+  /// Makes the log inconsistent where observations since the last step began to disagree: they are
+  /// no outliers.
   bool refuse_stretch() {
     is_over_ = true;
     take_size(watch_, result_);

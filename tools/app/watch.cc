@@ -223,8 +223,8 @@ RefusedFluent Watch::refused(std::size_t number, const harness::ReportedValues& 
   return out;
 }
 
-/// What is refused is refused without the tolerance as well; that says more where it leaves open
-/// which of several fluents it is.
+/// An observation that is refused is refused without the tolerance as well; that says more where it
+/// leaves open which of several fluents it is.
 void Watch::explain(const harness::ReportedValues& values, bool at_rest) {
   refusal_ = {};
   explain_seen(values);

@@ -68,7 +68,7 @@ class Watch {
   runtime::Admission observe(const harness::ReportedValues& values, bool at_rest);
   /// Did the last observation mention a fluent, so that it was compared?
   bool last_was_compared() const { return last_compared_; }
-  /// What the tolerance did so far, in compared observations.
+  /// Effects of the tolerance so far, in compared observations.
   const ToleratedReadings& tolerated() const { return tolerated_; }
   runtime::Admission step(const runtime::ToldStep& told);
   const runtime::Belief& belief() const { return *belief_; }
