@@ -108,6 +108,7 @@ Command new_command();
 Command ledger_command();
 Command record_command();
 Command replay_adapter_command();
+Command schema_command();
 Command prove_command();
 Command rates_command();
 Command draw_command();

@@ -92,7 +92,7 @@ std::vector<Command> all_commands(const Program& program) {
   add("Keep it right", {diff_command(), bisect_command(), ledger_command(), calibrate_command()});
   add("Bring a simulator of your own",
       {adapter_check_command(), record_command(), replay_adapter_command()});
-  add("The program itself", {doctor_command(), diagnostics_command()});
+  add("The program itself", {doctor_command(), diagnostics_command(), schema_command()});
   add("The program itself", manual_commands(program, all));
   add("", {worker_command(), supervise_command()});
   return all;

@@ -1,5 +1,5 @@
-# Debian packages `parallax`, `libparallax0.2` and `libparallax-dev`, made by tools/package and described in
-# docs/guide/installing.md.
+# Debian packages `parallax`, `libparallax0.2`, `libparallax-dev` and `python3-parallax`, made by tools/package and
+# described in docs/guide/installing.md.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME parallax)
 set(CPACK_PACKAGE_VENDOR "The parallax authors")
@@ -11,7 +11,7 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_OUTPUT_FILE_PREFIX ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL program shared development)
+set(CPACK_COMPONENTS_ALL program shared development python)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
@@ -59,6 +59,17 @@ compile models, enumerate traces, simulate worlds and judge predictions.
 .
 Programs that are linked with them need C++20.")
 
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-parallax)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "parallax (>= ${PROJECT_VERSION}), python3 (>= 3.8)")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-pandas, jupyter-notebook")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+"Python package for parallax, for programs and notebooks
+Traces, counts, properties, runs in a simulator and rates of discrepancies as
+dataclasses, streams and pictures, and a decorator that makes a simulator of
+a Python class. Needs nothing but Python and the program.")
+
 # Two changelogs: what is new for users, and the one that Debian requires of packages.
 set(made ${PROJECT_BINARY_DIR}/generated/packages)
 file(CONFIGURE OUTPUT ${made}/changelog.Debian @ONLY CONTENT
@@ -68,12 +79,16 @@ file(CONFIGURE OUTPUT ${made}/changelog.Debian @ONLY CONTENT
 
  -- @PARALLAX_PACKAGE_CONTACT@  @PARALLAX_DEBIAN_DATE@
 ")
-foreach(package parallax libparallax-dev ${PARALLAX_SHARED_PACKAGE})
+foreach(package parallax libparallax-dev ${PARALLAX_SHARED_PACKAGE} python3-parallax)
   if(package STREQUAL parallax)
     set(component program)
   elseif(package STREQUAL PARALLAX_SHARED_PACKAGE)
     set(component shared)
     install(FILES ${PROJECT_BINARY_DIR}/generated/copyright
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
+  elseif(package STREQUAL python3-parallax)
+    set(component python)
+    install(FILES ${PROJECT_SOURCE_DIR}/LICENSE RENAME copyright
       DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
   else()
     set(component development)

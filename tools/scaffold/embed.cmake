@@ -1,4 +1,5 @@
-# Writes C++ that holds the templates as raw string literals, in pieces short enough for every compiler.
+# Writes C++ that holds the files of FOLDER as string literals, in pieces short enough for every compiler: FUNCTION
+# returns them as a span of TYPE, as HEADER declares it.
 cmake_policy(SET CMP0053 NEW)  # @names@ are replaced by file(CONFIGURE) alone
 file(GLOB_RECURSE files RELATIVE ${FOLDER} ${FOLDER}/*)
 list(SORT files)
@@ -10,17 +11,17 @@ foreach(name ${files})
   string(APPEND rows "    {\"${name}\",\n     \"${text}\"},\n")
 endforeach()
 file(WRITE ${OUTPUT} "// Made by tools/scaffold/embed.cmake.
-#include \"tools/scaffold/templates.h\"
+#include \"${HEADER}\"
 
 namespace parallax::tools {
 namespace {
 
-const TemplateFile kTemplates[] = {
+const ${TYPE} kFiles[] = {
 ${rows}};
 
 }  // namespace
 
-std::span<const TemplateFile> template_files() { return kTemplates; }
+std::span<const ${TYPE}> ${FUNCTION}() { return kFiles; }
 
 }  // namespace parallax::tools
 ")

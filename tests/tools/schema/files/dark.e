@@ -1,0 +1,4 @@
+load lamp.e
+
+[lamp,time] !Happens(Press(lamp),time).
+HoldsAt(On(A),2).

@@ -1,0 +1,1 @@
+../adapters/python/parallax_adapter.py
