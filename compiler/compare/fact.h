@@ -27,6 +27,8 @@ struct Fact {
   std::string text;   // canonical, one line: facts with equal texts are the same
   std::string shown;  // as its author wrote it, on one line
   FactPlace place;
+  /// The names in their order, in a fact that tells one.
+  std::vector<std::string> sequence = {};
 };
 
 /// Difference of two lists of facts. Indices into the lists, in their order.

@@ -6,6 +6,7 @@
 
 #include "compiler/base/words.h"
 #include "compiler/compare/canonical_formula.h"
+#include "compiler/compare/plan_calls.h"
 #include "compiler/syntax/parser.h"
 #include "compiler/syntax/printer.h"
 
@@ -180,6 +181,18 @@ std::vector<Fact> artifact_facts(const CompiledModel& model) {
   for (const auto& atom : model.fixed) {
     if (atom.kind != AtomKind::kPredicate) continue;
     declare(facts, "predicate " + atom.name, atom.time ? " at " + std::to_string(*atom.time) : "");
+  }
+  const auto calls = plan_calls(model);
+  for (const auto& call : calls) {
+    const auto key = "call " + call.event;
+    const bool is_known =
+        std::any_of(facts.begin(), facts.end(), [&](const Fact& fact) { return fact.key == key; });
+    if (is_known) continue;
+    std::string values;
+    for (const auto& [name, value] : call_values(calls, call.event)) {
+      values += (values.empty() ? " " : "; ") + name + ' ' + value;
+    }
+    if (!values.empty()) declare(facts, key, values);
   }
   std::vector<std::size_t> clauses(model.origins.size(), 0);
   for (const auto origin : model.clause_origins) ++clauses[origin];

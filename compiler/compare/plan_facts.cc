@@ -12,6 +12,8 @@
 
 #include "compiler/compare/plan_facts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 #include <string_view>
@@ -35,6 +37,31 @@ FactPlace place_of(const base::SourceRange& range, const base::SourceFiles& file
 
 std::string shortened(std::string text) {
   return text.size() <= kMaxFormShown ? text : text.substr(0, kMaxFormShown) + "...";
+}
+
+Fact order_fact(const char* key, const char* of_what, std::vector<std::string> sequence,
+                const std::string& file) {
+  std::string whole, shown;
+  for (const auto& name : sequence) {
+    whole += ' ' + name;
+    if (shown.size() <= kMaxFormShown) shown += ' ' + shortened(name);
+  }
+  return {FactKind::kDeclaration,
+          key,
+          "order" + whole,
+          fmt::format("{} in this order:{}", of_what, shortened(shown)),
+          {file, 0},
+          std::move(sequence)};
+}
+
+/// Does what both lists have stand in the same order? Not known where a name stands twice.
+bool are_in_one_order(std::vector<std::string> before, std::vector<std::string> after) {
+  const std::set<std::string> first(before.begin(), before.end());
+  const std::set<std::string> second(after.begin(), after.end());
+  if (first.size() != before.size() || second.size() != after.size()) return before == after;
+  std::erase_if(before, [&](const std::string& name) { return !second.contains(name); });
+  std::erase_if(after, [&](const std::string& name) { return !first.contains(name); });
+  return before == after;
 }
 
 /// "(def-cram-function fetch-box" of a definition, else empty.
@@ -263,54 +290,49 @@ class EditFinder {
 
 std::vector<Fact> plan_facts(const LispText& plan, const base::SourceFiles& files) {
   std::vector<Fact> facts;
-  std::string order;
+  std::vector<std::string> order;
   for (const auto form : plan.forms) {
     auto text = print_datum(plan.data, form);
     const auto key = key_of(plan.data, form);
-    order += (order.empty() ? "" : " ") + (key.empty() ? shortened(text) : key + ")");
+    order.push_back(key.empty() ? text : key + ")");
     facts.push_back(
         {FactKind::kAxiom, key, text, shortened(text), place_of(plan.data.source(form), files)});
   }
-  if (plan.forms.size() > 1) {
-    facts.push_back({FactKind::kDeclaration,
-                     kOrderKey,
-                     "order " + order,
-                     "the forms in this order: " + shortened(order),
-                     {files[plan.file].name(), 0}});
+  if (order.size() > 1) {
+    facts.push_back(order_fact(kOrderKey, "the forms", std::move(order), files[plan.file].name()));
   }
   return facts;
 }
 
+Fact declaration_order(const std::vector<Fact>& facts) {
+  std::vector<std::string> order;
+  for (const auto& fact : facts) {
+    if (fact.kind == FactKind::kDeclaration) order.push_back(fact.key);
+  }
+  const auto file = facts.empty() ? std::string() : facts.front().place.file;
+  return order_fact("order of the declarations", "the declarations", std::move(order), file);
+}
+
 void drop_equal_order(std::vector<Fact>& old_facts, std::vector<Fact>& new_facts) {
-  const auto is_order = [](const Fact& fact) { return fact.key == kOrderKey; };
-  // The names of the forms beside that fact; none if one stands twice.
-  const auto names = [&](const std::vector<Fact>& facts) {
-    std::vector<std::string> out;
-    const auto order = std::find_if(facts.begin(), facts.end(), is_order);
-    if (order == facts.end()) return out;
-    for (const auto& fact : facts) {
-      if (fact.kind != FactKind::kAxiom || fact.place.file != order->place.file) continue;
-      out.push_back(fact.key.empty() ? fact.text : fact.key);
+  for (std::size_t i = 0; i < old_facts.size();) {
+    const auto twin = std::find_if(new_facts.begin(), new_facts.end(), [&](const Fact& fact) {
+      return !fact.sequence.empty() && fact.key == old_facts[i].key;
+    });
+    const bool same = !old_facts[i].sequence.empty() && twin != new_facts.end() &&
+                      are_in_one_order(old_facts[i].sequence, twin->sequence);
+    if (!same) {
+      ++i;
+      continue;
     }
-    auto sorted = out;
-    std::sort(sorted.begin(), sorted.end());
-    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) out.clear();
-    return out;
-  };
-  auto before = names(old_facts), after = names(new_facts);
-  if (before.empty() || after.empty()) return;
-  const std::set<std::string> first(before.begin(), before.end());
-  const std::set<std::string> second(after.begin(), after.end());
-  std::erase_if(before, [&](const std::string& name) { return !second.contains(name); });
-  std::erase_if(after, [&](const std::string& name) { return !first.contains(name); });
-  if (before != after) return;
-  std::erase_if(old_facts, is_order);
-  std::erase_if(new_facts, is_order);
+    new_facts.erase(twin);
+    old_facts.erase(old_facts.begin() + static_cast<std::ptrdiff_t>(i));
+  }
 }
 
 std::vector<Fact> binding_facts(base::FileId file, const base::SourceFiles& files) {
   const auto clean = clean_binding(files[file].text());
   std::vector<Fact> facts;
+  std::vector<std::string> order;
   for (std::size_t i = 0; i < clean.entries.size(); ++i) {
     const auto begin = clean.entries[i];
     const auto end = i + 1 < clean.entries.size() ? clean.entries[i + 1] : clean.text.size();
@@ -322,8 +344,13 @@ std::vector<Fact> binding_facts(base::FileId file, const base::SourceFiles& file
     const auto arrow = text.find(" - >");
     const auto key = arrow == std::string::npos ? text : text.substr(0, arrow);
     const auto line = files[file].position(static_cast<std::uint32_t>(begin)).line;
+    order.push_back(key);
     facts.push_back(
         {FactKind::kAxiom, key, text, base::one_line(entry), {files[file].name(), line}});
+  }
+  if (order.size() > 1) {
+    facts.push_back(order_fact("order of the entries", "the entries of the binding table",
+                               std::move(order), files[file].name()));
   }
   return facts;
 }

@@ -14,12 +14,16 @@ namespace parallax::compiler {
 /// later definition replaces an earlier one.
 std::vector<Fact> plan_facts(const LispText& plan, const base::SourceFiles& files);
 
-/// Drops the fact of the order from both revisions where the forms that both plans have stand in
-/// the same order; added and removed forms are facts of their own. A name that occurs twice keeps
-/// it.
+/// Drops the facts of an order from both revisions where what both have stands in the same order;
+/// what was added and removed are facts of their own. A name that occurs twice keeps it.
 void drop_equal_order(std::vector<Fact>& old_facts, std::vector<Fact>& new_facts);
 
-/// A fact for every entry of a binding table, without comments and layout.
+/// The order of the declarations among the facts of a model, where it says something: the first
+/// initial state is the first by this order.
+Fact declaration_order(const std::vector<Fact>& facts);
+
+/// A fact for every entry of a binding table, without comments and layout, and one for their order,
+/// since the first entry that matches counts.
 std::vector<Fact> binding_facts(base::FileId file, const base::SourceFiles& files);
 
 /// The forms in their order, in a layout of our own of at most 100 columns where the data allow.

@@ -41,6 +41,30 @@ bool only_looks_back(const TypedModel& model, TypedFormulaId formula) {
   });
 }
 
+bool waits_for_end(const TypedModel& model, TypedFormulaId formula) {
+  struct Task {
+    TypedFormulaId formula;
+    bool is_positive = true;
+  };
+  std::vector<Task> todo = {{formula, true}};
+  while (!todo.empty()) {
+    const auto task = todo.back();
+    todo.pop_back();
+    const auto& one = model.formulas[task.formula];
+    const bool has_promise = task.is_positive ? one.temporal == TemporalOp::kEventually ||
+                                                    one.temporal == TemporalOp::kUntil
+                                              : one.temporal == TemporalOp::kAlways;
+    if (one.kind == FormulaKind::kTemporal && has_promise) return true;
+    for (std::size_t i = 0; i < one.children.size(); ++i) {
+      const bool flips =
+          one.kind == FormulaKind::kNot || (one.kind == FormulaKind::kImplies && i == 0);
+      todo.push_back({one.children[i], task.is_positive != flips});
+      if (one.kind == FormulaKind::kIff) todo.push_back({one.children[i], !task.is_positive});
+    }
+  }
+  return false;
+}
+
 TemporalTruth::TemporalTruth(const TypedModel& model, const ReferenceLimits& limits)
     : model_(model),
       limits_(limits),

@@ -14,6 +14,10 @@ namespace parallax::compiler {
 /// Does no operator about later timepoints stand in the formula?
 bool only_looks_back(const TypedModel& model, TypedFormulaId formula);
 
+/// Does the formula promise that something comes about at some time (`eventually`, `until`), so
+/// that no beginning of an execution can break it?
+bool waits_for_end(const TypedModel& model, TypedFormulaId formula);
+
 /// Part of a formula that makes it false of a trace, at the timepoint where one would look.
 struct TemporalBreak {
   base::SourceRange formula;  // a part of it

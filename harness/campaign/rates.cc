@@ -38,6 +38,7 @@ class Estimator {
     result.until_known = options_.until_known;
     result.indifference = options_.indifference;
     result.comparison = scenario_.comparison();
+    result.match_model = scenario_.match_model;
     const auto visit = [&](CampaignTrace trace) -> base::Result<bool> {
       bool complete = true;
       auto rates = one_trace(std::move(trace), complete);
@@ -49,6 +50,12 @@ class Estimator {
         visit_asked_traces(bench_, traces_, options_.trace, scenario_.name, visit, sink_);
     if (!complete) return sink_.already_reported();
     result.complete = *complete;
+    if (scenario_.mapping) {
+      result.compared =
+          compared_fluents(*scenario_.mapping, bench_.fluents().ground(), result.comparison);
+    }
+    const auto& simulator = bench_.simulator();
+    result.simulator = simulator.name + (simulator.version.empty() ? "" : " ") + simulator.version;
     if (!result.complete && !lost_too_often_) forget_plan(result);
     if (options_.trace == 0) result.bounds = traces_.bounds();
     return result;
@@ -100,6 +107,7 @@ class Estimator {
       report_progress(trace.number, trial->next_sample() - 1);
     }
     trial->end();
+    rates.starts.states_hash = trial->starts().digest();
     trial->starts().describe(rates.starts, trial->next_sample() - (ran_out ? 0 : 1));
     rates.law = law.result();
     rates.left_out = law.drawn().left_out;

@@ -76,6 +76,12 @@ struct RatesResult {
   std::optional<RateClaim> until_known;
   std::optional<IndifferenceRegion> indifference;
   Comparison comparison = Comparison::kEveryStep;
+  std::vector<ComparedFluents> compared{};
+  bool match_model = true;  // as in Scenario
+  std::string simulator{};  // "ode 0.16.2"; empty: there was no trace to start it for
+  /// Hashes of what decides on the result, for who compares it with another one; set by those who
+  /// know them (tools/app/rates_identity.h).
+  std::string scenario_hash{}, starts_hash{}, judging_hash{};
   bool complete = true;  // false: stopped, or the simulator was lost too often
   std::vector<TraceRates> traces;
   std::vector<std::string> bounds;  // what was left out, a sentence each

@@ -24,6 +24,7 @@ struct StateCounts {
 /// The initial states that lead to a trace's events, and which of them were simulated.
 struct StartResult {
   Initial law = Initial::kAll;
+  std::string states_hash;  // StartStates::digest(); empty: not asked for
   /// Number of initial states, told apart by the fluents that are compared. None: more than are
   /// listed.
   std::optional<std::int64_t> all = 1;

@@ -26,6 +26,7 @@
 
 #include "compiler/base/contract.h"
 #include "compiler/base/hash.h"
+#include "compiler/base/sha256.h"
 #include "harness/campaign/loop_stream.h"
 #include "harness/campaign/trial.h"
 
@@ -291,6 +292,27 @@ std::string StartStates::law_text() const {
   const auto all = count();
   return fmt::format("{} of {}", law_word(sources_.scenario.initial),
                      all ? std::to_string(*all) : std::string("more than are listed"));
+}
+
+std::string StartStates::digest() const {
+  const auto text_of = [&](const State& state) {
+    return fmt::format("{}", fmt::join(names_of(state, *trace_->symbols), " "));
+  };
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < states_.size() && !more_; ++i) {
+    lines.push_back(fmt::format("{} {}", text_of(states_[i]),
+                                weights_.empty() ? std::string() : fmt::format("{}", weights_[i])));
+  }
+  for (const auto& part : parts_) {
+    std::vector<std::string> values;
+    for (const auto& value : part) values.push_back(text_of(value));
+    std::sort(values.begin(), values.end());
+    lines.push_back(fmt::format("{}", fmt::join(values, " | ")));
+  }
+  // With `more_` and without parts the trace's own state stands for all.
+  if (lines.empty()) lines.push_back(text_of(own()));
+  std::sort(lines.begin(), lines.end());
+  return base::sha256_hex(fmt::format("{}", fmt::join(lines, "\n"))).substr(0, 16);
 }
 
 void StartStates::describe(StartResult& result, std::int64_t last) const {

@@ -68,6 +68,8 @@ class StartStates {
   bool has(std::int64_t state) const;
   /// How states are drawn, for a journal: "uniform of 6"; empty where there is one only.
   std::string law_text() const;
+  /// Names which initial states samples begin in, with their weights: equal for equal ones.
+  std::string digest() const;
   /// Fills in all but the counts. Candidates are those of samples up to `last`.
   void describe(StartResult& result, std::int64_t last) const;
   /// The true ones, by name, of the fluents that tell listed states apart.

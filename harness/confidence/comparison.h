@@ -50,4 +50,18 @@ struct ComparedFluents {
   std::string why;  // of an ignored one, in the scenario's words; may be empty
 };
 
+constexpr std::string_view to_string(ComparedFluents::How how) {
+  switch (how) {
+    case ComparedFluents::How::kEveryStep:
+      break;
+    case ComparedFluents::How::kAtTheEnd:
+      return "final";
+    case ComparedFluents::How::kAtTheStart:
+      return "start";
+    case ComparedFluents::How::kIgnored:
+      return "ignored";
+  }
+  return "every-step";
+}
+
 }  // namespace parallax::harness

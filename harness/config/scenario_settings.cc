@@ -12,6 +12,7 @@
 #include <span>
 
 #include "compiler/base/ascii.h"
+#include "compiler/base/sha256.h"
 #include "harness/config/sections.h"
 #include "harness/config/settings_reader.h"
 
@@ -257,6 +258,19 @@ std::vector<Effect> effects_of(const std::vector<std::string>& path) {
     }
   }
   return out;
+}
+
+std::string hash_of_settings(const ScenarioSettings& settings, Effect effect,
+                             const std::vector<std::string>& without) {
+  std::string text;
+  for (const auto& setting : settings.all) {
+    if (!setting.given || setting.is_default() || setting.path.empty()) continue;
+    if (std::find(without.begin(), without.end(), setting.path.front()) != without.end()) continue;
+    const auto effects = effects_of(setting.path);
+    if (std::find(effects.begin(), effects.end(), effect) == effects.end()) continue;
+    text += path_text(setting.path) + '=' + setting.value + '\n';
+  }
+  return base::sha256_hex(text).substr(0, 16);
 }
 
 void insert(ScenarioSettings& settings, Setting setting) {

@@ -48,6 +48,11 @@ struct ScenarioSettings {
   std::vector<KnownKeys> known;
 };
 
+/// SHA-256 over the settings that can have this effect, 16 digits, without those that say what is
+/// the default and those below the keys `without`.
+std::string hash_of_settings(const ScenarioSettings& settings, Effect effect,
+                             const std::vector<std::string>& without = {});
+
 /// Puts one more value among them.
 void insert(ScenarioSettings& settings, Setting setting);
 

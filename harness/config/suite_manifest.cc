@@ -172,6 +172,19 @@ bool may_be_scenario(const YamlNode& root) {
   });
 }
 
+/// Is it a manifest whose key `cases` is misspelt? It has a list of things with a model or an id
+/// that something is expected of.
+bool may_be_manifest(const YamlNode& root) {
+  const auto is_case = [](const YamlNode& item) {
+    return item.is_map() && item.find(Key::kExpect) != nullptr &&
+           (item.find(Key::kModel) != nullptr || item.find(Key::kId) != nullptr);
+  };
+  return std::any_of(root.entries.begin(), root.entries.end(), [&](const YamlEntry& entry) {
+    const auto& items = entry.value.items;
+    return entry.value.is_list() && std::any_of(items.begin(), items.end(), is_case);
+  });
+}
+
 }  // namespace
 
 SuiteFileKind suite_file_kind(const std::filesystem::path& path, bool allow_outside) {
@@ -190,7 +203,8 @@ SuiteFileKind suite_file_kind(const std::filesystem::path& path, bool allow_outs
     // An empty one takes back what an included file expects.
     const bool is_scenario =
         expect != nullptr ? expect->value.kind != YamlNode::Kind::kNull : may_be_scenario(*root);
-    return is_scenario ? SuiteFileKind::kScenario : SuiteFileKind::kOther;
+    if (is_scenario) return SuiteFileKind::kScenario;
+    return may_be_manifest(*root) ? SuiteFileKind::kManifest : SuiteFileKind::kOther;
   }
   if (files.size() == 0) return SuiteFileKind::kBroken;
   // The file alone, where what it includes cannot be read.

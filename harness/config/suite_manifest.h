@@ -45,7 +45,7 @@ struct SuiteManifest {
 /// The role of a YAML file in a suite.
 enum class SuiteFileKind : std::uint8_t {
   kOther,     // neither of these
-  kManifest,  // has a key `cases` at its outermost level
+  kManifest,  // has a key `cases` at its outermost level, or cases below another key
   kScenario,  // expects something there, or names a model
   kBroken,    // cannot be read, or something that it includes cannot: it may be either
 };

@@ -219,8 +219,20 @@ std::string rates_json(const RatesResult& result) {
                           {"confidence", result.confidence},
                           {"intervals", result.fixed_runs ? "clopper-pearson" : "anytime"},
                           {"compare", to_string(result.comparison)},
+                          {"compared", OrderedJson::array()},
+                          {"match", result.match_model ? "model" : "trace"},
                           {"complete", result.complete},
                           {"traces", OrderedJson::array()}};
+  for (const auto& entry : result.compared) {
+    document["compared"].push_back({{"fluent", entry.fluent}, {"compared", to_string(entry.how)}});
+  }
+  const auto add_name = [&](const char* name, const std::string& value) {
+    if (!value.empty()) document[name] = value;
+  };
+  add_name("simulator", result.simulator);
+  add_name("scenario_hash", result.scenario_hash);
+  add_name("starts_hash", result.starts_hash);
+  add_name("judging_hash", result.judging_hash);
   for (const TraceRates& trace : result.traces) {
     OrderedJson causes = OrderedJson::array();
     for (const CauseRate& rate : trace.causes) causes.push_back(rate_object(rate));
@@ -235,6 +247,9 @@ std::string rates_json(const RatesResult& result) {
     auto& object = document["traces"].back();
     if (trace.of_the_solver > 0) object["of_the_solver"] = trace.of_the_solver;
     object["initial_states"] = starts_json<OrderedJson>(trace.starts);
+    if (!trace.starts.states_hash.empty()) {
+      object["initial_states"]["states_hash"] = trace.starts.states_hash;
+    }
     if (trace.law) object["law"] = law_json<OrderedJson>(*trace.law);
     if (!trace.left_out.empty()) object["left_out"] = trace.left_out;
     for (const auto& value : trace.values) object["values"].push_back(value_json(value, trace));

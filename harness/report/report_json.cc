@@ -74,14 +74,7 @@ std::vector<std::string> ignored_names(const std::vector<ComparedFluents>& compa
 OrderedJson json_of(const std::vector<ComparedFluents>& compared) {
   auto out = OrderedJson::array();
   for (const auto& entry : compared) {
-    const bool ignored = entry.how == ComparedFluents::How::kIgnored;
-    const bool final = entry.how == ComparedFluents::How::kAtTheEnd;
-    const bool start = entry.how == ComparedFluents::How::kAtTheStart;
-    const std::string_view how = ignored ? "ignored"
-                                 : final ? "final"
-                                 : start ? "start"
-                                         : "every-step";
-    out.push_back({{"fluent", entry.fluent}, {"compared", how}});
+    out.push_back({{"fluent", entry.fluent}, {"compared", to_string(entry.how)}});
     if (!entry.why.empty()) out.back()["why"] = entry.why;
   }
   return out;

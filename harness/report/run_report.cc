@@ -319,6 +319,10 @@ std::optional<RunReport> read_run_report(std::string_view text) {
   }
   out.execution = reported_text(report, "execution");
   out.comparison = reported_text(report, "compare");
+  for (const auto& entry : reported_list(report, "compared")) {
+    out.compared += fmt::format("{}{} {}", out.compared.empty() ? "" : ", ",
+                                reported_text(entry, "fluent"), reported_text(entry, "compared"));
+  }
   out.criterion = reported_json(report, "criterion");
   out.simulator = reported_json(report, "simulator");
   out.criterion_spec = reported_criterion(reported_member(report, "criterion"));

@@ -84,6 +84,7 @@ struct RunReport {
   std::vector<std::string> ignored;  // fluents that are not compared
   std::string execution;             // "open-loop", "closed-loop"
   std::string comparison;
+  std::string compared;  // by fluent: "Open(..) every-step, Parked() ignored"
   // JSON on one line, members in order of their names; empty: not reported.
   std::string criterion, simulator;
   std::optional<CriterionSpec> criterion_spec;  // the paper's rule by its preset alone

@@ -22,11 +22,12 @@ void add_removed(const SuiteOptions& options, MergedSuite& merged) {
   const auto& suite = merged.identity;
   base::DiagnosticSink unread;
   auto earlier = read_results(options.out, unread);
-  const auto last = last_names(earlier ? *std::move(earlier) : StoredResults{}, options.history,
-                               [&](const SuiteSelection& other) {
-                                 return other.paths == suite.paths && other.only == suite.only &&
-                                        other.fast == suite.fast;
-                               });
+  auto last = last_names(earlier ? *std::move(earlier) : StoredResults{}, options.history,
+                         [&](const SuiteSelection& other) {
+                           return normal_paths(other.paths) == normal_paths(suite.paths) &&
+                                  other.only == suite.only && other.fast == suite.fast;
+                         });
+  last.insert(merged.removed.begin(), merged.removed.end());
   std::set<std::string> names;
   for (const auto& one : merged.cases) names.insert(one.name());
   for (auto& one : removed_cases(names, last, suite.only, Shard{})) {

@@ -13,6 +13,7 @@
 #include "harness/campaign/row_statistics.h"
 #include "harness/report/report.h"
 #include "tools/app/evidence.h"
+#include "tools/app/rates_identity.h"
 #include "tools/app/scenario_check.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_feed.h"
@@ -187,7 +188,8 @@ int run_rates(const RateOptions& given, Invocation& invocation) {
   if (!check_method(options, invocation.sink())) return 0;
   const auto workers = fleet_of(options.launcher, options.rates.jobs, invocation);
   if (!workers) return 0;
-  auto loaded = load_scenario_model(options.scenario, invocation);
+  harness::ScenarioSettings settings;
+  auto loaded = load_scenario_model(options.scenario, invocation, {.settings = &settings});
   if (!loaded) return 0;
   apply(options.judging, loaded->scenario);
   const auto& model = loaded->compilation.model;
@@ -219,6 +221,7 @@ int run_rates(const RateOptions& given, Invocation& invocation) {
       harness::estimate_rates(loaded->scenario, traces, *simulator, rates, invocation.sink());
   if (rates.progress) clear_progress();
   if (!report_fleet(*workers, invocation) || !result || !samples.write(invocation)) return 0;
+  add_identity(*loaded, settings, *result);
   if (options.cause_kinds) add_cause_kinds(samples.rows(), loaded->world != nullptr, *result);
   if (options.outcomes) harness::add_outcomes(samples.rows(), *result);
   harness::add_values(samples.rows(), options.values, *result);

@@ -7,7 +7,9 @@
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
+#include "compiler/base/file_io.h"
 #include "compiler/base/folder_lock.h"
+#include "compiler/base/sha256.h"
 #include "compiler/base/words.h"
 #include "compiler/base/write_gate.h"
 #include "harness/simulator/arithmetic.h"
@@ -66,8 +68,8 @@ base::Result<Collected> wanted_cases(const SuiteOptions& options, const StoredRe
   });
   // A suite that looked at fewer cases does not know what is gone.
   const auto last = last_names(earlier, options.history, [&](const SuiteSelection& suite) {
-    return suite.paths == options.paths && (suite.only.empty() || suite.only == options.only) &&
-           (!suite.fast || options.fast);
+    return normal_paths(suite.paths) == normal_paths(options.paths) &&
+           (suite.only.empty() || suite.only == options.only) && (!suite.fast || options.fast);
   });
   auto removed = removed_cases(names, last, options.only, shard);
   if (cases->empty() && removed.empty()) {
@@ -288,16 +290,21 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
   if (!check_suite_folder(options, sink)) return 0;
   const auto lock = base::FolderLock::claim(options.out, sink);
   if (!lock) return 0;
-  const SuiteIdentity identity{kVersion,
-                               program_hash(),
-                               harness::arithmetic_digits(),
-                               options.seed,
-                               *shard,
-                               options.paths,
-                               options.only,
-                               options.fast,
-                               options.commands.allow,
-                               invocation.form().allow_outside};
+  SuiteIdentity identity{kVersion,
+                         program_hash(),
+                         harness::arithmetic_digits(),
+                         options.seed,
+                         *shard,
+                         options.paths,
+                         options.only,
+                         options.fast,
+                         options.commands.allow,
+                         invocation.form().allow_outside};
+  if (!options.ledger.empty()) {
+    base::DiagnosticSink unread;  // a ledger that cannot be read is refused below
+    const auto text = base::read_file(options.ledger, unread);
+    if (text) identity.ledger = base::sha256_hex(*text);
+  }
   const auto earlier = earlier_results(options, identity, sink);
   if (!earlier) return 0;
   const auto quarantine = quarantine_of(options, invocation);
@@ -334,6 +341,7 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
   if (!record.save(sink)) return 0;
   auto loop = loop_options(options, caches, known, invocation);
   if (caches) loop.runner.last_passes = &passes;
+  loop.runner.shared_folders = shared_run_folders(record.cases());
   run_open_cases(record, loop, earlier->cases, reuse, cache, passes, voice, stop_flag());
   tell_removed(record, voice);
   speak_of_quarantine(record, options.only.empty() && !options.fast && !options.rerun_failed,

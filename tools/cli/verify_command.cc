@@ -13,6 +13,7 @@
 #include "compiler/base/ground_name.h"
 #include "compiler/base/json.h"
 #include "compiler/base/temporary_folder.h"
+#include "compiler/reference/temporal_truth.h"
 #include "harness/config/ledger.h"
 #include "harness/report/text_layout.h"
 #include "runtime/cubes/cube_solver.h"
@@ -51,6 +52,8 @@ struct CheckedProperty {
   std::optional<runtime::OpenAtoms> open;
   runtime::Exploration exploration = runtime::Exploration::kStopped;
   std::vector<std::string> bounds;
+  /// It holds, but promises something for the end, and some executions do not end by the horizon.
+  bool is_open_ended = false;
   bool cut = false;                             // some execution comes to where unrolling was cut
   std::optional<compiler::Timepoint> dead_end;  // length of a violating prefix that cannot go on
   bool by_symmetry = false;       // the search for violations covered representatives only
@@ -187,6 +190,7 @@ std::string answer_text(const compiler::CompiledModel& model, const CheckedPrope
   if (answer.exploration == runtime::Exploration::kAllTracesExplored && !model.plan.empty()) {
     out += ", and every path of the plan has ended by then";
   }
+  if (answer.is_open_ended) out += ", of executions that end by then: others go on";
   return out + '\n';
 }
 
@@ -214,6 +218,7 @@ std::string answer_json(const compiler::CompiledModel& model, const CheckedPrope
   out["horizon"] = model.horizon;
   out["exploration"] = runtime::to_string(answer.exploration);
   if (!answer.bounds.empty()) out["bounds"] = answer.bounds;
+  if (answer.is_open_ended) out["open_ended"] = true;
   if (answer.dead_end) out["dead_end"] = *answer.dead_end;
   if (answer.violation) {
     out["timepoint"] = answer.violation->length();
@@ -305,6 +310,9 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
     return 0;
   }
   const bool holds = !answer.violation && answer.exploration != runtime::Exploration::kStopped;
+  answer.is_open_ended = holds && !answer.bounds.empty() &&
+                         compiler::waits_for_end(*compilation->typed,
+                                                 compilation->constraints.front().formula.formula);
   if (holds && answer.cut) certifier.note_cut();
   if (holds && certifier.reservations().any()) {
     answer.reservations = certifier.reservations();

@@ -133,7 +133,11 @@ base::Result<GateReport> hold_gate(const GateInput& input, const harness::GateRu
   if (has_traces(input.old_kind)) {
     if (!rules.models) return none("models");
     report.kind = "model";
-    return done(gate_models(input, *rules.models, report, context));
+    auto own = input;
+    if (input.old_kind == RevisionKind::kScenario && input.new_kind == RevisionKind::kScenario) {
+      add_scenario_folders(input.old_path, input.new_path, own.models);
+    }
+    return done(gate_models(own, *rules.models, report, context));
   }
   if (input.old_kind == RevisionKind::kTraces) {
     if (!rules.traces) return none("trace files");

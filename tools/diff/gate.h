@@ -63,9 +63,15 @@ base::Result<GateReport> hold_gate(const GateInput& input, const harness::GateRu
 base::Result<std::vector<RuleResult>> gate_models(const GateInput& input,
                                                   const harness::GateRules::Models& rules,
                                                   GateReport& report, Context& context);
-/// A rule about the settings of two scenarios.
+/// Is the rule about such a change?
+bool is_about(const harness::GateRules::SettingRule& rule, const SettingChange& change);
+/// A rule about the settings of two scenarios; of two models, about their horizons.
 RuleResult setting_rule(const ModelDifference& found, const harness::GateRules::SettingRule& rule);
-/// `physics: rerun` of two scenarios: runs both where their physics changed.
+/// Facts that changed, a line each: those of a world that is a model, or those of model, plan,
+/// binding table and constraints.
+std::vector<std::string> changed_facts(const ModelDifference& found, bool of_world);
+/// `physics: rerun` of two scenarios: runs both where anything changed that their simulations
+/// depend on.
 RuleResult rerun_rule(const ModelDifference& found, const GateInput& input,
                       const harness::GateRules::Rerun& rule, Context& context);
 /// The same for the scenarios of two run folders, by the texts that the runs kept.

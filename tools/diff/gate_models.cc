@@ -4,6 +4,7 @@
 #include "runtime/session/solver_session.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_feed.h"
+#include "tools/app/trace_writer.h"
 #include "tools/diff/gate.h"
 
 namespace parallax::tools {
@@ -67,6 +68,9 @@ RuleResult fact_rule(const FactReport& report, FactKind kind, const char* name) 
 
 /// Does a revision have the property, and if not, how is it violated?
 struct RevisionAnswer {
+  compiler::Timepoint horizon = 0;
+  /// Executions go on beyond the horizon, or beyond a form whose unrolling was cut: in words.
+  std::string open;
   base::Known holds = base::Known::kUndecided;
   std::string why;      // where it is not known
   std::string witness;  // a violation
@@ -85,6 +89,7 @@ base::Result<RevisionAnswer> ask_property(const std::string& path, RevisionKind 
   options.property = property;
   const auto compilation = compile_models(options, context);
   if (!compilation) return context.sink().already_reported();
+  out.horizon = compilation->model.horizon;
   runtime::SolverSession session(compilation->model, runtime::make_cadical_solver(&context.stop()));
   runtime::PlanEnumerator violations(session, {.order = runtime::TraceOrder::kAny});
   if (const auto violation = violations.next()) {
@@ -95,6 +100,10 @@ base::Result<RevisionAnswer> ask_property(const std::string& path, RevisionKind 
   if (context.stopped() || violations.exploration() == runtime::Exploration::kStopped) {
     out.why = fmt::format("a limit was reached before it was known of {}", path);
     return out;
+  }
+  if (violations.exploration() == runtime::Exploration::kCompleteUpToBound) {
+    const auto ends = open_end_texts(compilation->model, violations.open_ends());
+    out.open = ends.empty() ? "executions go on beyond the horizon" : ends.front();
   }
   // A model without executions satisfies everything, which says nothing.
   const auto sink = context.sink();
@@ -111,13 +120,33 @@ base::Result<RevisionAnswer> ask_property(const std::string& path, RevisionKind 
 
 base::Result<RuleResult> property_rule(const GateInput& input, const std::string& property,
                                        Context& context) {
-  const auto& with = input.models.load.model;
-  const auto before = ask_property(input.old_path, input.old_kind, with, property, context);
+  const auto& with = input.models;
+  const auto before = ask_property(input.old_path, input.old_kind,
+                                   with.old_model.value_or(with.load.model), property, context);
   if (!before) return context.sink().already_reported();
-  const auto after = ask_property(input.new_path, input.new_kind, with, property, context);
+  const auto after = ask_property(input.new_path, input.new_kind,
+                                  with.new_model.value_or(with.load.model), property, context);
   if (!after) return context.sink().already_reported();
   RuleResult out{"models.properties", RuleOutcome::kKept, property + ": holds"};
-  if (after->holds == base::Known::kYes) return out;
+  if (after->holds == base::Known::kYes && before->holds != base::Known::kNo) {
+    // Executions that are not looked at any more may violate it.
+    if (after->horizon < before->horizon) {
+      out.outcome = RuleOutcome::kUndecided;
+      out.words = fmt::format("{}: holds up to timepoint {}, but {} goes on to {}", property,
+                              after->horizon, input.old_path, before->horizon);
+    } else if (!after->open.empty() && before->open.empty()) {
+      out.outcome = RuleOutcome::kUndecided;
+      out.words = fmt::format(
+          "{}: holds up to timepoint {}, but in {} not every execution ends by "
+          "then, as in {}: {}",
+          property, after->horizon, input.new_path, input.old_path, after->open);
+    }
+    return out;
+  }
+  if (after->holds == base::Known::kYes) {
+    out.words = property + ": did not hold before";
+    return out;
+  }
   if (before->holds == base::Known::kNo) {
     out.words = property + ": did not hold before either";
   } else if (after->holds == base::Known::kUndecided) {

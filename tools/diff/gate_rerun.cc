@@ -1,5 +1,9 @@
 // The rule of a gate that demands runs where the physics of a scenario changed.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <initializer_list>
 
 #include "compiler/base/words.h"
 #include "harness/confidence/rounding.h"
@@ -58,16 +62,71 @@ void judge(RuleResult& rule, double error, std::size_t traces) {
   rule.witness = evidence.listed + lines;
 }
 
+/// The changes of settings that have one of these effects.
+std::vector<SettingChange> with_effects(const ModelDifference& found,
+                                        std::initializer_list<harness::Effect> wanted) {
+  std::vector<SettingChange> out;
+  for (const auto& change : *found.settings) {
+    const auto& effects = change.effects;
+    const bool has_one = std::any_of(wanted.begin(), wanted.end(), [&](harness::Effect effect) {
+      return std::find(effects.begin(), effects.end(), effect) != effects.end();
+    });
+    if (has_one) out.push_back(change);
+  }
+  return out;
+}
+
+std::string paths_of(const std::vector<SettingChange>& changes) {
+  std::vector<std::string> paths;
+  for (const auto& change : changes) paths.push_back(harness::path_text(change.path));
+  return fmt::format("{}", fmt::join(paths, ", "));
+}
+
+/// Changes of all else that a simulation depends on: model, plan, binding table, constraints and
+/// horizon. Appends them to the words and lines of the rule, which is then broken.
+void add_predicted(const ModelDifference& found, RuleResult& out) {
+  const auto facts = changed_facts(found, false);
+  const auto settings = with_effects(found, {harness::Effect::kTraces});
+  std::string words;
+  if (!facts.empty()) {
+    words = fmt::format("{} of model, plan and binding table changed",
+                        base::counted(std::ssize(facts), "fact"));
+  }
+  for (const auto& change : settings) {
+    words += (words.empty() ? "" : "; ") + change_text(change);
+  }
+  if (words.empty()) return;
+  out.words = out.outcome == RuleOutcome::kBroken ? out.words + "; " + words : words;
+  out.outcome = RuleOutcome::kBroken;
+  out.witness += settings_text(settings, false) + fmt::format("{}", fmt::join(facts, ""));
+}
+
 RuleResult run_both(const ModelDifference& found, const RerunSide& before, const RerunSide& after,
                     const GateInput& input, const harness::GateRules::Rerun& rule,
                     const Context& context) {
   auto out = setting_rule(found, {"physics", harness::GateRules::Demand::kForbidden});
-  if (out.outcome != RuleOutcome::kBroken) return out;
+  if (!found.settings) return out;
+  add_predicted(found, out);
+  const auto judged = with_effects(found, {harness::Effect::kStarts, harness::Effect::kJudgement});
+  if (out.outcome != RuleOutcome::kBroken) {
+    out.words += judged.empty()
+                     ? ", neither physics nor model, plan or binding table"
+                     : fmt::format(
+                           ", neither physics nor model, plan or binding table; starts or "
+                           "judgement did, which this rule does not weigh: {}",
+                           paths_of(judged));
+    return out;
+  }
   auto evidence = std::make_shared<RerunEvidence>();
   evidence->rule = rule;
   evidence->changes = out.words;
   evidence->listed = out.witness;
-  if (input.rerunner == nullptr) {
+  if (!judged.empty()) {
+    evidence->problem = fmt::format(
+        "another comparison, or other starts: {} changed as well, so that worse and better runs "
+        "would say nothing of the rest",
+        paths_of(judged));
+  } else if (input.rerunner == nullptr) {
     evidence->problem = "nothing can be run here";
   } else {
     input.rerunner->run(before, after, context, *evidence);

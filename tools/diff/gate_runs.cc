@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
 #include "compiler/base/contract.h"
 #include "harness/report/run_report.h"
 #include "tools/diff/gate.h"
+#include "tools/diff/kept_difference.h"
 #include "tools/diff/textconv.h"
 
 namespace parallax::tools {
@@ -26,6 +28,8 @@ struct RunSummary {
   std::string name, verdict;
   bool stopped = false;                       // not all traces were examined
   std::string judged_by;                      // what decides on discrepancies
+  std::string compared;                       // "Open(..) every-step, Parked() ignored"
+  std::map<std::string, std::string> begins;  // initial states by events
   std::map<std::string, std::string> traces;  // verdicts by events
   std::vector<FoundDiscrepancy> discrepancies;
 };
@@ -38,9 +42,14 @@ RunSummary summary_of(const std::string& name, const harness::RunReport& report)
   out.judged_by = fmt::format("{}\n{}\n{}\n{}", report.comparison, report.execution,
                               report.criterion, report.simulator_name);
   std::map<std::int64_t, std::string> events;
+  out.compared = report.compared;
   for (const auto& trace : *report.traces) {
     const auto text = fmt::format("{}", fmt::join(trace.events, " "));
     events[trace.number] = text;
+    const auto all = trace.starts ? trace.starts->all : std::optional<std::int64_t>(1);
+    out.begins[text] = all == 1 ? fmt::format("{}", fmt::join(trace.initial_state, " "))
+                       : all    ? fmt::format("{} states", *all)
+                                : std::string("more states than are listed");
     out.traces[text] = trace.verdict;
   }
   if (!report.discrepancies) return out;
@@ -72,10 +81,8 @@ std::string trace_name(const std::string& events) {
 
 /// Why it is not known that the newer run has no further discrepancy; empty: it is known as far as
 /// the older run looked.
-std::string unseen(const RunSummary& before, const RunSummary& after) {
-  if (before.judged_by != after.judged_by) {
-    return "the runs were not judged alike: comparison, execution, criterion or simulator differ";
-  }
+std::string unseen(const RunSummary& before, const RunSummary& after, const std::string& others) {
+  if (!others.empty()) return others;
   for (const auto& [events, verdict] : before.traces) {
     const auto now = after.traces.find(events);
     if (now == after.traces.end()) {
@@ -94,7 +101,46 @@ std::string unseen(const RunSummary& before, const RunSummary& after) {
   return {};
 }
 
-RuleResult discrepancy_rule(const RunSummary& before, const RunSummary& after, GateReport& report) {
+/// Why the newer run may show less although nothing is better: it compares otherwise, or begins
+/// elsewhere. Empty: it does not.
+std::string other_runs(const RunSummary& before, const RunSummary& after,
+                       const std::string& old_folder, const std::string& new_folder,
+                       const Context& context) {
+  if (before.judged_by != after.judged_by) {
+    return "the runs were not judged alike: comparison, execution, criterion or simulator differ";
+  }
+  if (before.compared != after.compared) {
+    return fmt::format("another comparison: {} compares {}; {} compares {}", before.name,
+                       before.compared, after.name, after.compared);
+  }
+  for (const auto& [events, begin] : before.begins) {
+    const auto now = after.begins.find(events);
+    if (now == after.begins.end() || now->second == begin) continue;
+    return fmt::format("{} begins in other initial states ({}, now {})", trace_name(events), begin,
+                       now->second);
+  }
+  const KeptPair pair(old_folder, new_folder, context);
+  const auto found = pair.refused().empty() ? pair.compare(context) : std::nullopt;
+  if (!found || !found->settings) {
+    return fmt::format("it is not known whether both begin and are judged alike: {}",
+                       pair.refused().empty() ? "the texts that they kept cannot be read any more"
+                                              : pair.refused());
+  }
+  for (const auto& change : *found->settings) {
+    const auto has = [&](harness::Effect effect) {
+      return std::find(change.effects.begin(), change.effects.end(), effect) !=
+             change.effects.end();
+    };
+    if (has(harness::Effect::kJudgement)) {
+      return "another comparison: " + change_text(change);
+    }
+    if (has(harness::Effect::kStarts)) return "other starts: " + change_text(change);
+  }
+  return {};
+}
+
+RuleResult discrepancy_rule(const RunSummary& before, const RunSummary& after,
+                            const std::string& others, GateReport& report) {
   RuleResult out{"runs.gained_discrepancies", RuleOutcome::kKept, {}};
   std::size_t gained = 0;
   for (const auto& found : after.discrepancies) {
@@ -108,7 +154,7 @@ RuleResult discrepancy_rule(const RunSummary& before, const RunSummary& after, G
     return out;
   }
   out.words = "none gained";
-  if (auto why = unseen(before, after); !why.empty()) {
+  if (auto why = unseen(before, after, others); !why.empty()) {
     out.outcome = RuleOutcome::kUndecided;
     out.words = std::move(why);
   }
@@ -136,12 +182,19 @@ RuleResult run_trace_rule(const RunSummary& before, const RunSummary& after) {
   return out;
 }
 
-RuleResult verdict_rule(const RunSummary& before, const RunSummary& after) {
+RuleResult verdict_rule(const RunSummary& before, const RunSummary& after,
+                        const std::string& others) {
   RuleResult out{"runs.worse_verdict", RuleOutcome::kKept,
                  before.verdict == after.verdict
                      ? fmt::format("{} as before", after.verdict)
                      : fmt::format("{}, before {}", after.verdict, before.verdict)};
-  if (after.verdict == before.verdict || before.verdict == "discrepancy") return out;
+  if (before.verdict == "discrepancy") return out;
+  if (after.verdict != "discrepancy" && !others.empty()) {
+    out.outcome = RuleOutcome::kUndecided;
+    out.words += "; " + others;
+    return out;
+  }
+  if (after.verdict == before.verdict) return out;
   if (after.verdict == "discrepancy") out.outcome = RuleOutcome::kBroken;
   if (after.verdict == "inconclusive") out.outcome = RuleOutcome::kUndecided;
   return out;
@@ -160,10 +213,14 @@ base::Result<std::vector<RuleResult>> gate_runs(const GateInput& input,
   PARALLAX_REQUIRE(old_run && new_run, "a report that was loaded can be read");
   const auto before = summary_of(input.old_path, *old_run);
   const auto after = summary_of(input.new_path, *new_run);
+  const auto others =
+      rules.gained_discrepancies || rules.worse_verdict
+          ? other_runs(before, after, folder_of(input.old_path), folder_of(input.new_path), context)
+          : std::string();
   std::vector<RuleResult> out;
-  if (rules.gained_discrepancies) out.push_back(discrepancy_rule(before, after, report));
+  if (rules.gained_discrepancies) out.push_back(discrepancy_rule(before, after, others, report));
   if (rules.lost_traces) out.push_back(run_trace_rule(before, after));
-  if (rules.worse_verdict) out.push_back(verdict_rule(before, after));
+  if (rules.worse_verdict) out.push_back(verdict_rule(before, after, others));
   if (rules.rerun) {
     out.push_back(kept_rerun_rule(folder_of(input.old_path), folder_of(input.new_path), input,
                                   *rules.rerun, context));

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/confidence/criterion.h"
 #include "harness/config/scenario_settings.h"
 #include "tools/diff/gate.h"
 
@@ -36,13 +37,17 @@ std::optional<std::array<double, 2>> interval_in(const std::string& text) {
   return std::array{*low, *high};
 }
 
-bool concerns(const harness::GateRules::SettingRule& rule, const SettingChange& change) {
+}  // namespace
+
+bool is_about(const harness::GateRules::SettingRule& rule, const SettingChange& change) {
   const auto& effects = change.effects;
   if (rule.name == "settings") return effects != std::vector{Effect::kWords};
   if (rule.name == change.path.front() && effects != std::vector{Effect::kWords}) return true;
   return std::any_of(effects.begin(), effects.end(),
                      [&](Effect effect) { return to_string(effect) == rule.name; });
 }
+
+namespace {
 
 /// Broken, kept, or not decidable, where the change has no direction.
 RuleOutcome by_number(const SettingChange& change, bool may_grow) {
@@ -52,10 +57,37 @@ RuleOutcome by_number(const SettingChange& change, bool may_grow) {
                                                             : RuleOutcome::kBroken;
 }
 
+/// The runs of a criterion, where a default stands for as many as suffice if all are clean.
+std::optional<std::int64_t> runs_of(const std::optional<harness::ScenarioSettings>& settings) {
+  if (!settings) return std::nullopt;
+  const auto number = [&](const char* key) -> std::optional<double> {
+    for (const auto& setting : settings->all) {
+      if (setting.path == std::vector<std::string>{"criterion", key}) {
+        return number_in(setting.value);
+      }
+    }
+    return std::nullopt;
+  };
+  harness::CriterionSpec spec;
+  spec.kind = harness::CriterionKind::kClopperPearson;
+  spec.confidence_level = number("confidence").value_or(spec.confidence_level);
+  spec.epsilon = number("epsilon").value_or(spec.epsilon);
+  spec.runs = static_cast<std::int64_t>(number("runs").value_or(0.0));
+  if (spec.confidence_level <= 0.0 || spec.confidence_level >= 1.0 || spec.epsilon <= 0.0) {
+    return std::nullopt;
+  }
+  return harness::planned_runs(spec);
+}
+
 /// Confidence and runs may grow, epsilon may shrink; all traces may share the error.
-RuleOutcome not_weaker(const SettingChange& change) {
+RuleOutcome not_weaker(const SettingChange& change, const ModelDifference& found) {
   const auto& key = change.path.back();
-  if (key == "confidence" || key == "runs") return by_number(change, true);
+  if (key == "confidence") return by_number(change, true);
+  if (key == "runs") {
+    const auto before = runs_of(found.old_side.settings), after = runs_of(found.new_side.settings);
+    if (!before || !after) return RuleOutcome::kUndecided;
+    return *after >= *before ? RuleOutcome::kKept : RuleOutcome::kBroken;
+  }
   if (key == "epsilon") return by_number(change, false);
   if (key == "family") {
     return change.after == "all-traces" ? RuleOutcome::kKept : RuleOutcome::kBroken;
@@ -80,12 +112,12 @@ RuleOutcome not_wider(const SettingChange& change) {
   return is_inside ? RuleOutcome::kKept : RuleOutcome::kBroken;
 }
 
-RuleOutcome outcome_of(Demand demand, const SettingChange& change) {
+RuleOutcome outcome_of(Demand demand, const SettingChange& change, const ModelDifference& found) {
   switch (demand) {
     case Demand::kNotShorter:
       return by_number(change, true);
     case Demand::kNotWeaker:
-      return not_weaker(change);
+      return not_weaker(change, found);
     case Demand::kNotWider:
       return not_wider(change);
     case Demand::kForbidden:
@@ -101,14 +133,10 @@ RuleOutcome worse_of(RuleOutcome a, RuleOutcome b) {
 
 }  // namespace
 
-namespace {
-
-/// Changed facts of a world that is a model, a line each: they change what is simulated as much as
-/// a setting does.
-std::vector<std::string> changed_world_facts(const ModelDifference& found) {
+std::vector<std::string> changed_facts(const ModelDifference& found, bool of_world) {
   std::vector<std::string> out;
   const auto add = [&](char mark, const compiler::Fact& fact) {
-    if (fact.text.starts_with(kWorldFact))
+    if (fact.text.starts_with(kWorldFact) == of_world)
       out.push_back(fmt::format("  {} {}\n", mark, fact.shown));
   };
   const auto &before = found.old_side.facts, &after = found.new_side.facts;
@@ -118,25 +146,57 @@ std::vector<std::string> changed_world_facts(const ModelDifference& found) {
   return out;
 }
 
+namespace {
+
+/// The last timepoint of a model, as it was compiled or else as its text says.
+std::optional<std::int64_t> horizon_of(const ModelRevision& side, std::int64_t compiled) {
+  if (side.compiled) return compiled;
+  for (const auto& fact : side.facts) {
+    if (fact.key != "range time") continue;
+    const auto number = number_in(std::string_view(fact.text).substr(fact.text.rfind(' ') + 1));
+    if (number) return static_cast<std::int64_t>(*number);
+  }
+  return std::nullopt;
+}
+
+/// The rule for two models that are no scenarios.
+RuleResult horizon_rule(const ModelDifference& found, const harness::GateRules::SettingRule& rule) {
+  RuleResult out{"models." + rule.name, RuleOutcome::kKept, "none changed"};
+  const auto before = horizon_of(found.old_side, found.old_horizon);
+  const auto after = horizon_of(found.new_side, found.new_horizon);
+  if (before == after) return out;
+  if (!before || !after) {
+    out.outcome = RuleOutcome::kUndecided;
+    out.words = "only one of the two says its last timepoint";
+    return out;
+  }
+  const bool is_allowed = rule.demand == Demand::kNotShorter && *after > *before;
+  out.outcome = is_allowed ? RuleOutcome::kKept : RuleOutcome::kBroken;
+  out.words = fmt::format("horizon {} -> {}", *before, *after);
+  return out;
+}
+
 }  // namespace
 
 RuleResult setting_rule(const ModelDifference& found, const harness::GateRules::SettingRule& rule) {
   RuleResult out{"models." + rule.name, RuleOutcome::kKept, "none changed"};
   if (!found.settings) {
     const bool mixed = found.old_side.settings || found.new_side.settings;
+    if (!mixed && rule.name == "horizon") return horizon_rule(found, rule);
     out.outcome = mixed ? RuleOutcome::kUndecided : RuleOutcome::kKept;
     out.words = mixed ? "only one of the two is a scenario" : "neither is a scenario";
     return out;
   }
   std::vector<SettingChange> changes;
   for (const auto& change : *found.settings) {
-    if (!concerns(rule, change)) continue;
-    out.outcome = worse_of(out.outcome, outcome_of(rule.demand, change));
+    if (!is_about(rule, change)) continue;
+    out.outcome = worse_of(out.outcome, outcome_of(rule.demand, change, found));
     changes.push_back(change);
   }
   const bool of_world =
       rule.name == "physics" || rule.name == "simulator" || rule.name == "settings";
-  const auto facts = of_world ? changed_world_facts(found) : std::vector<std::string>();
+  // They change what is simulated as much as a setting does.
+  const auto facts = of_world ? changed_facts(found, true) : std::vector<std::string>();
   if (!facts.empty()) {
     out.outcome =
         worse_of(out.outcome, rule.demand == Demand::kForbidden ? RuleOutcome::kBroken

@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <filesystem>
 #include <functional>
 #include <set>
+#include <system_error>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/codes/files.h"
+#include "compiler/base/path_gate.h"
 #include "compiler/base/shown_text.h"
 #include "compiler/cnf/encoder.h"
 #include "compiler/compare/model_facts.h"
@@ -125,11 +129,8 @@ class ModelComparison {
 
   base::Result<ModelDifference> run(const std::string& old_path, RevisionKind old_kind,
                                     const std::string& new_path, RevisionKind new_kind) {
-    auto old_load = options_.load, new_load = options_.load;
-    if (options_.old_commands) old_load.commands = options_.old_commands;
-    if (options_.new_commands) new_load.commands = options_.new_commands;
-    auto a = load_model_revision(old_path, old_kind, old_load, context_);
-    auto b = load_model_revision(new_path, new_kind, new_load, context_);
+    auto a = load_model_revision(old_path, old_kind, load_of(true), context_);
+    auto b = load_model_revision(new_path, new_kind, load_of(false), context_);
     if (!a || !b) return context_.sink().already_reported();
     out_.old_side = *std::move(a);
     out_.new_side = *std::move(b);
@@ -150,6 +151,15 @@ class ModelComparison {
   }
 
  private:
+  LoadRevision load_of(bool is_old) const {
+    auto out = options_.load;
+    const auto& commands = is_old ? options_.old_commands : options_.new_commands;
+    const auto& model = is_old ? options_.old_model : options_.new_model;
+    if (commands) out.commands = commands;
+    if (model) out.model = *model;
+    return out;
+  }
+
   /// A text is compiled for the shorter horizon; a compiled model is cut.
   bool align_horizons() {
     auto& a = out_.old_side;
@@ -161,7 +171,7 @@ class ModelComparison {
                     a.compiled->horizon, b.compiled->horizon));
     for (auto* side : {&a, &b}) {
       if (side->kind != RevisionKind::kModel || side->compiled->horizon == shorter) continue;
-      auto load = options_.load;
+      auto load = load_of(side == &a);
       load.model.horizon = shorter;
       auto again = load_model_revision(side->name, side->kind, load, context_);
       if (!again) return false;
@@ -230,9 +240,43 @@ class ModelComparison {
     return true;
   }
 
+  /// Remarks on files of a command that both sides have as one file, or that are not there.
+  void note_command() {
+    const auto& a = out_.old_side.command;
+    const auto& b = out_.new_side.command;
+    const auto folder = [](const ModelRevision& side) {
+      return base::real_path(side.name).parent_path();
+    };
+    const bool is_one_folder = folder(out_.old_side) == folder(out_.new_side);
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+      std::error_code error;
+      const bool in_old = std::filesystem::is_regular_file(a[i], error);
+      const bool in_new = std::filesystem::is_regular_file(b[i], error);
+      // A program of the system is that of both.
+      const bool is_system = i == 0 && !base::lies_below(a[i], base::real_path("."));
+      if (is_system) continue;
+      if (in_old && in_new && !is_one_folder && base::real_path(a[i]) == base::real_path(b[i])) {
+        out_.remarks.push_back(fmt::format(
+            "the command names {}, the same file for both sides: what changed in it is not seen",
+            base::printable(a[i])));
+      }
+      if (in_old || in_new || i == 0 || !looks_like_file(a[i])) continue;
+      out_.remarks.push_back(fmt::format(
+          "the command names {}, which was not found: it was not compared", base::printable(a[i])));
+    }
+  }
+
+  static bool looks_like_file(const std::string& word) {
+    const auto name = std::filesystem::path(word).filename().string();
+    const auto dot = name.rfind('.');
+    return !word.starts_with('-') && dot != name.npos && dot > 0 && dot + 1 < name.size() &&
+           base::is_name_character(name[dot + 1]) && !base::is_digit(name[dot + 1]);
+  }
+
   void compare_settings() {
     const auto& a = out_.old_side;
     const auto& b = out_.new_side;
+    if (a.settings && b.settings) note_command();
     if (a.settings && b.settings) {
       out_.settings = tools::compare_settings(*a.settings, *b.settings);
     } else if (a.settings || b.settings) {
@@ -334,10 +378,34 @@ std::optional<std::vector<RevisionEdit>> responsible_edits(
   return undone;
 }
 
+void add_scenario_folders(const std::string& old_path, const std::string& new_path,
+                          ModelDiffOptions& options) {
+  if (options.old_commands || options.new_commands) return;
+  const auto before = base::real_path(old_path).parent_path();
+  const auto after = base::real_path(new_path).parent_path();
+  if (before == after) return;
+  const auto side = [](const std::filesystem::path& folder, const std::filesystem::path& other) {
+    CommandFolder out{folder, {folder}, {other}};
+    for (auto above = folder; above.has_relative_path(); above = above.parent_path()) {
+      if (!base::is_marked_root(above)) continue;
+      if (above != folder) out.current.push_back(above);
+      break;
+    }
+    out.current.push_back(base::real_path("."));
+    return out;
+  };
+  options.old_commands = side(before, after);
+  options.new_commands = side(after, before);
+}
+
 base::Result<ModelDifference> compare_models(const std::string& old_path, RevisionKind old_kind,
                                              const std::string& new_path, RevisionKind new_kind,
                                              const ModelDiffOptions& options, Context& context) {
-  return ModelComparison(options, context).run(old_path, old_kind, new_path, new_kind);
+  auto with = options;
+  const bool are_scenarios =
+      old_kind == RevisionKind::kScenario && new_kind == RevisionKind::kScenario;
+  if (are_scenarios) add_scenario_folders(old_path, new_path, with);
+  return ModelComparison(with, context).run(old_path, old_kind, new_path, new_kind);
 }
 
 }  // namespace parallax::tools

@@ -57,6 +57,8 @@ struct ModelDiffOptions {
   LoadRevision load;
   /// Where each side has the files of a simulator's command, instead of `load.commands`.
   std::optional<CommandFolder> old_commands = std::nullopt, new_commands = std::nullopt;
+  /// The models and options of each side, where they differ, instead of `load.model`.
+  std::optional<ModelOptions> old_model = std::nullopt, new_model = std::nullopt;
   bool facts = true;   // compare declarations, axioms and, of scenarios, settings
   bool traces = true;  // compare meaning
   /// Names of the old side that have others in the new one; and whether more of them are looked
@@ -65,6 +67,12 @@ struct ModelDiffOptions {
   bool find_renamings = false;
   std::size_t list_limit = 200;
 };
+
+/// Each of two scenarios has the files of its simulator's command beside it, or from the marked
+/// root of its project; only what is not there counts from the current folder. Does nothing where
+/// the options say it already, or both lie in one folder.
+void add_scenario_folders(const std::string& old_path, const std::string& new_path,
+                          ModelDiffOptions& options);
 
 /// Everything that is known of the difference of two models.
 struct ModelDifference {

@@ -50,11 +50,48 @@ std::string change_text(const RateCounts& before, const RateCounts& after) {
   return fmt::format("{} before, {} now", counts_text(before), counts_text(after));
 }
 
-std::string not_comparable(const RatesRevision& before, const RatesRevision& after) {
+namespace {
+
+/// Why counts of the two are of other comparisons, or of runs that begin elsewhere; empty: they are
+/// not, as far as the files say.
+std::string not_of_the_same(const RatesRevision& before, const RatesRevision& after) {
   if (before.compare != after.compare) {
     return fmt::format("{} compares `{}` and {} `{}`", before.name, before.compare, after.name,
                        after.compare);
   }
+  if (before.says_what_it_is_of() != after.says_what_it_is_of()) {
+    const auto& silent = before.says_what_it_is_of() ? after : before;
+    return fmt::format(
+        "{} does not say which fluents it compares and where its runs begin, as files of earlier "
+        "versions",
+        silent.name);
+  }
+  if (before.compared != after.compared) {
+    return fmt::format("another comparison: {} compares {}; {} compares {}", before.name,
+                       before.compared, after.name, after.compared);
+  }
+  if (before.match != after.match) {
+    return fmt::format("another comparison: {} has `match: {}` and {} `match: {}`", before.name,
+                       before.match, after.name, after.match);
+  }
+  if (before.judging_hash != after.judging_hash) {
+    return fmt::format(
+        "another comparison: regions, mapping or unobserved events of {} are not those of {}",
+        after.name, before.name);
+  }
+  if (before.starts_hash != after.starts_hash) {
+    return fmt::format(
+        "runs of {} begin elsewhere: regions, mapping, sampling or laws of starts are not those of "
+        "{}",
+        after.name, before.name);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string not_comparable(const RatesRevision& before, const RatesRevision& after) {
+  if (auto why = not_of_the_same(before, after); !why.empty()) return why;
   for (const auto* side : {&before, &after}) {
     // Anytime-valid bounds hold wherever the runs ended.
     if (!side->complete && side->fixed) {
@@ -75,6 +112,9 @@ std::string not_comparable(const RatesRevision& before, const RatesRevision& aft
     if (!same_initial(trace.initial, same->initial)) {
       return fmt::format("initial states of the trace {} were drawn otherwise ({}, now {})",
                          trace.events, initial_text(trace.initial), initial_text(same->initial));
+    }
+    if (trace.initial.states != same->initial.states) {
+      return fmt::format("runs of the trace {} begin in other initial states", trace.events);
     }
   }
   for (const auto& trace : after.traces) {

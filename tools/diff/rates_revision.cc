@@ -39,6 +39,7 @@ std::optional<RevisionInitial> initial_of(const SortedJson& json) {
   if (!is_known || all == nullptr) return std::nullopt;
   RevisionInitial out;
   out.law = *law;
+  out.states = at<std::string>(json, "states_hash").value_or("");
   if (!all->is_null()) {
     out.all = base::json_as<std::int64_t>(*all);
     if (!out.all || *out.all < 1) return std::nullopt;
@@ -137,6 +138,18 @@ base::Result<RatesRevision> parse_rates(const std::string& name, const std::stri
   out.name = name;
   out.scenario = at<std::string>(json, "scenario").value_or("");
   out.compare = *compared;
+  if (const auto* list = base::json_member(json, "compared"); list && list->is_array()) {
+    for (const auto& one : *list) {
+      out.compared += fmt::format("{}{} {}", out.compared.empty() ? "" : ", ",
+                                  at<std::string>(one, "fluent").value_or(""),
+                                  at<std::string>(one, "compared").value_or(""));
+    }
+  }
+  out.match = at<std::string>(json, "match").value_or("");
+  out.simulator = at<std::string>(json, "simulator").value_or("");
+  out.scenario_hash = at<std::string>(json, "scenario_hash").value_or("");
+  out.starts_hash = at<std::string>(json, "starts_hash").value_or("");
+  out.judging_hash = at<std::string>(json, "judging_hash").value_or("");
   out.seed = at<std::uint64_t>(json, "seed").value_or(0);
   out.complete = *complete;
   out.fixed = at<std::string>(json, "intervals") != "anytime";
@@ -168,6 +181,15 @@ std::vector<Fact> rates_facts(const RatesRevision& rates) {
   add(FactKind::kDeclaration, "scenario", rates.scenario);
   add(FactKind::kDeclaration, "seed", std::to_string(rates.seed));
   add(FactKind::kDeclaration, "compare", rates.compare);
+  const auto add_known = [&](const char* key, const std::string& value) {
+    if (!value.empty()) add(FactKind::kDeclaration, key, value);
+  };
+  add_known("compared", rates.compared);
+  add_known("match", rates.match);
+  add_known("simulator", rates.simulator);
+  add_known("hash of scenario, models and plan", rates.scenario_hash);
+  add_known("hash of starts", rates.starts_hash);
+  add_known("hash of judging", rates.judging_hash);
   if (!rates.complete) add(FactKind::kDeclaration, "complete", "no");
   for (const auto& trace : rates.traces) {
     const auto name = fmt::format("trace [{}]", trace.events);
@@ -176,6 +198,9 @@ std::vector<Fact> rates_facts(const RatesRevision& rates) {
     if (!trace.law.empty()) add(FactKind::kDeclaration, name + ", starts", trace.law);
     if (!trace.initial.is_one_state()) {
       add(FactKind::kDeclaration, name + ", initial states", initial_text(trace.initial));
+    }
+    if (!trace.initial.states.empty()) {
+      add(FactKind::kDeclaration, name + ", hash of initial states", trace.initial.states);
     }
     add(FactKind::kAxiom, name, fmt::format("{} discrepancies", trace.any.failures));
     for (const auto& cause : trace.causes) {

@@ -17,6 +17,7 @@ struct RevisionInitial {
   /// "uniform", "weights" or "first"; files of versions that sampled only the first do not say it.
   std::string law = "first";
   std::optional<std::int64_t> all;  // none: more than are listed; of "first" also: not known
+  std::string states{};             // hash of which they are; empty: an earlier version's file
 
   bool is_one_state() const { return law == "first" || all == 1; }
 };
@@ -42,6 +43,13 @@ struct RevisionRates {
 struct RatesRevision {
   std::string name;  // the file
   std::string scenario, compare;
+  /// The comparison of each fluent, "Open(..) every-step, Parked() ignored". What says nothing is
+  /// empty in files of earlier versions.
+  std::string compared{};
+  std::string match{};                        // "model", "trace"
+  std::string simulator{}, scenario_hash{};   // for people
+  std::string starts_hash{}, judging_hash{};  // of the scenario's settings
+  bool says_what_it_is_of() const { return !compared.empty() || !starts_hash.empty(); }
   std::uint64_t seed = 0;
   bool complete = false;  // all runs were made
   bool fixed = true;      // their number did not depend on what they came to

@@ -206,6 +206,7 @@ void rename(ModelRevision& side, const std::vector<Renaming>& renamings) {
   };
   for (auto& fact : side.facts) {
     for (auto* text : {&fact.key, &fact.text, &fact.shown}) apply(*text);
+    for (auto& name : fact.sequence) apply(name);
   }
   if (side.settings) {
     auto& all = side.settings->all;

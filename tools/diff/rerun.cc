@@ -20,6 +20,7 @@
 #include "harness/campaign/rates.h"
 #include "harness/campaign/row_statistics.h"
 #include "harness/report/report.h"
+#include "tools/app/rates_identity.h"
 #include "tools/app/trace_feed.h"
 #include "tools/diff/rate_change.h"
 
@@ -118,7 +119,8 @@ std::optional<RatesRevision> Rerunner::side(const RerunSide& side, const char* w
     out.problem = fmt::format("the {} side cannot be run: {}", word, why);
     return std::nullopt;
   };
-  auto loaded = load_scenario_model(side.scenario, own);
+  harness::ScenarioSettings settings;
+  auto loaded = load_scenario_model(side.scenario, own, {.settings = &settings});
   if (!loaded) return refuse(first_error(own));
   auto& command = loaded->scenario.simulator.command;
   if (!command.empty() && side.is_kept) {
@@ -150,6 +152,7 @@ std::optional<RatesRevision> Rerunner::side(const RerunSide& side, const char* w
     return refuse("its initial states cannot be drawn, so runs of the first say nothing of others");
   }
   harness::add_outcomes(rows, *result);
+  add_identity(*loaded, settings, *result);
   auto rates = parse_rates(side.name, harness::rates_json(*result), own);
   if (!rates) return refuse(first_error(own));
   return *std::move(rates);

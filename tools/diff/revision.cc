@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "compiler/artifact/artifact_writer.h"
+#include "compiler/base/ascii.h"
 #include "compiler/base/codes/artifacts.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/ground_name.h"
 #include "compiler/compare/model_facts.h"
+#include "compiler/compare/plan_calls.h"
 #include "harness/simulator/command_files.h"
 #include "tools/app/scenario_model.h"
 
@@ -122,6 +126,38 @@ void add_command_files(const std::string& path, const harness::Scenario& scenari
                              0});
 }
 
+/// Does the action of the event take the plan's argument?
+bool takes_from_plan(const harness::Scenario& scenario, const std::string& event,
+                     const std::string& argument) {
+  const auto symbol = base::symbol_of(event);
+  for (const auto& action : scenario.actions) {
+    if (action.event != symbol || !action.from_plan) continue;
+    return std::any_of(action.from_plan->begin(), action.from_plan->end(), [&](const auto& taken) {
+      return argument == taken.first || argument.starts_with(taken.first + '.');
+    });
+  }
+  return true;
+}
+
+/// Adds what the plan hands to controllers, which overrides the arguments under `actions`.
+void add_plan_calls(const harness::Scenario& scenario, const compiler::CompiledModel& model,
+                    harness::ScenarioSettings& settings) {
+  const auto calls = compiler::plan_calls(model);
+  std::set<std::string> seen;
+  for (const auto& call : calls) {
+    if (!seen.insert(call.event).second) continue;
+    for (const auto& [name, value] : compiler::call_values(calls, call.event)) {
+      if (!takes_from_plan(scenario, call.event, name)) continue;
+      harness::insert(settings, {{"actions", call.event, "from the plan", name},
+                                 value,
+                                 std::nullopt,
+                                 true,
+                                 call.place.file,
+                                 call.place.line});
+    }
+  }
+}
+
 base::Result<ModelRevision> load_scenario_revision(const std::string& path,
                                                    const LoadRevision& options, Context& context) {
   ModelRevision out{path, RevisionKind::kScenario, {}, harness::ScenarioSettings(), std::nullopt,
@@ -130,12 +166,17 @@ base::Result<ModelRevision> load_scenario_revision(const std::string& path,
   if (!loaded) return context.sink().already_reported();
   const auto& scenario = loaded->scenario;
   add_command_files(path, scenario, options.commands, *out.settings);
+  out.command = options.commands ? command_of(scenario.simulator.command, *options.commands)
+                                 : scenario.simulator.command;
   std::vector<std::string> models;
   for (const auto& model : scenario.models) models.push_back(model.text);
   compiler::LoadOptions load;
   load.named_by = {path};
   load.allow_outside = context.form().allow_outside;
   add_text_facts(models, load, out.facts);
+  if (scenario.initial == harness::Initial::kFirst) {
+    out.facts.push_back(compiler::declaration_order(out.facts));
+  }
   if (!scenario.plan.empty()) {
     const auto files = load_scenario_plan(scenario, context);
     if (!files) return context.sink().already_reported();
@@ -156,6 +197,7 @@ base::Result<ModelRevision> load_scenario_revision(const std::string& path,
                          {file.name(), file.position(constraint.source.begin).line}});
   }
   add_world_facts(scenario, load, out.facts);
+  add_plan_calls(scenario, loaded->compilation.model, *out.settings);
   out.compiled = std::move(loaded->compilation.model);
   return out;
 }
@@ -170,7 +212,10 @@ std::optional<RevisionKind> kind_of(const std::string& path) {
   if (compiler::is_artifact_name(name)) return RevisionKind::kArtifact;
   const auto extension = fs::path(path).extension().string();
   if (extension == ".e") return RevisionKind::kModel;
-  if (extension == ".yaml" || extension == ".yml") return RevisionKind::kScenario;
+  // As suites find them.
+  auto small = extension;
+  std::transform(small.begin(), small.end(), small.begin(), base::to_lower);
+  if (small == ".yaml" || small == ".yml") return RevisionKind::kScenario;
   if (extension == ".lisp") return RevisionKind::kPlan;
   if (extension == ".bind") return RevisionKind::kBinding;
   if (extension == ".json") return RevisionKind::kRates;

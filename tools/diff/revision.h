@@ -43,6 +43,8 @@ struct ModelRevision {
   std::optional<compiler::CompiledModel> compiled = std::nullopt;  // if traces are compared
   /// The facts are those of texts, so that a variant can be written from them and compiled.
   bool is_text = false;
+  /// The command of an external simulator, with its files as the side has them.
+  std::vector<std::string> command = {};
 };
 
 /// Where one side of a comparison has the files that the command of a simulator names.

@@ -44,6 +44,12 @@ int precision(const LedgerEntry& entry) {
   return (entry.outcome ? 1 : 0) + (entry.fluents ? 1 : 0) + (entry.trace ? 1 : 0);
 }
 
+/// Where two entries fit equally well the repaired one counts, wherever it stands: that
+/// it is back must not be hidden by the other.
+bool is_stricter(const LedgerEntry& entry, const LedgerEntry& than) {
+  return entry.status == LedgerStatus::kRepaired && than.status != LedgerStatus::kRepaired;
+}
+
 LedgerFinding find_in(const harness::Ledger& ledger, std::string_view scenario,
                       const ShownDiscrepancy& shown) {
   LedgerFinding out;
@@ -54,7 +60,10 @@ LedgerFinding find_in(const harness::Ledger& ledger, std::string_view scenario,
       if (entry.event == shown.event && out.nearest == nullptr) out.nearest = &entry;
       continue;
     }
-    if (out.entry == nullptr || precision(entry) > precision(*out.entry)) out.entry = &entry;
+    if (out.entry == nullptr || precision(entry) > precision(*out.entry) ||
+        (precision(entry) == precision(*out.entry) && is_stricter(entry, *out.entry))) {
+      out.entry = &entry;
+    }
   }
   if (out.entry != nullptr) {
     out.nearest = nullptr;
@@ -120,7 +129,11 @@ LedgerVerdict hold_against(const harness::Ledger& ledger, std::string_view scena
   std::set<const LedgerEntry*> seen;
   for (const auto& shown : run.discrepancies) {
     auto finding = find_in(ledger, scenario, shown);
-    if (finding.entry != nullptr) seen.insert(finding.entry);
+    for (const auto& entry : ledger.entries) {
+      const bool fits = finding.entry != nullptr && entry.scenario == scenario &&
+                        precision(entry) == precision(*finding.entry) && is_known_as(shown, entry);
+      if (fits) seen.insert(&entry);
+    }
     const auto which = finding.entry != nullptr ? finding.entry->id : "?" + identity_text(shown);
     if (told.insert(which).second) out.findings.push_back(std::move(finding));
   }

@@ -54,7 +54,7 @@ std::set<std::string> last_names(const StoredResults& earlier, const std::string
 
 std::set<std::string> known_names(const StoredResults& earlier, const SuiteIdentity& suite) {
   const bool is_whole = suite.only.empty() && !suite.fast;
-  if (is_whole || earlier.identity.paths != suite.paths) return {};
+  if (is_whole || normal_paths(earlier.identity.paths) != normal_paths(suite.paths)) return {};
   auto out = earlier.known;
   for (const auto& [name, one] : earlier.cases) out.insert(name);
   return out;

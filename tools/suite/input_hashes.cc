@@ -9,6 +9,7 @@
 #include "compiler/base/file_io.h"
 #include "compiler/base/path_gate.h"
 #include "compiler/base/sha256.h"
+#include "tools/suite/program_modules.h"
 
 namespace parallax::tools {
 namespace {
@@ -79,7 +80,10 @@ const std::string& program_hash() {
   static const std::string hash = [] {
     std::vector<std::string> paths;
     ::dl_iterate_phdr(add_library, &paths);
+    const auto modules = module_files();
+    paths.insert(paths.end(), modules.begin(), modules.end());
     std::sort(paths.begin(), paths.end());
+    paths.erase(std::unique(paths.begin(), paths.end()), paths.end());
     std::string all = hash_of_content("/proc/self/exe");
     for (const auto& path : paths) all += hash_of_content(path);
     return base::sha256_hex(all);

@@ -22,8 +22,8 @@ class InputHashes {
   std::map<std::string, std::string> known_;
 };
 
-/// SHA-256 of this program's file and of those of the libraries that it has loaded, which
-/// identifies the program that made a result.
+/// SHA-256 of this program's file, of those of the libraries that it has loaded, and of its modules
+/// with theirs, which children load. It identifies the program that made a result.
 const std::string& program_hash();
 
 }  // namespace parallax::tools

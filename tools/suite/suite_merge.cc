@@ -19,6 +19,7 @@ struct Part {
 struct Parts {
   std::map<std::uint32_t, Part> by_index;  // of the shard
   std::vector<std::string> lost;           // folders without results
+  std::set<std::string> removed;           // cases that a shard knows to be gone
 };
 
 base::Reported refused(const std::string& folder, const std::string& why,
@@ -84,7 +85,11 @@ base::Result<Parts> read_parts(const std::vector<std::string>& folders,
       out.lost.push_back(folder);
       continue;
     }
-    // A shard that was killed lists what is gone; the merge asks the last merge.
+    for (const auto& [name, stored] : results->cases) {
+      // A shard that was killed has not told it.
+      if (stored.result.outcome == Outcome::kRemoved) out.removed.insert(name);
+    }
+    out.removed.insert(results->removed.begin(), results->removed.end());
     std::erase_if(results->cases,
                   [](const auto& item) { return item.second.result.outcome == Outcome::kRemoved; });
     if (results->identity.program.empty()) {
@@ -97,6 +102,15 @@ base::Result<Parts> read_parts(const std::vector<std::string>& folders,
         return refused(folder,
                        fmt::format("this and {} are of different suites: {}", first.folder, other),
                        sink);
+      }
+      if (first.results.identity.ledger != results->identity.ledger) {
+        const bool is_other =
+            !first.results.identity.ledger.empty() && !results->identity.ledger.empty();
+        return refused(
+            folder,
+            fmt::format("this and {} are judged differently: {}", first.folder,
+                        is_other ? "by other ledgers" : "one with --ledger and one without"),
+            sink);
       }
       const auto name = only_in_one(first.results.cases, results->cases);
       if (!name.empty()) {
@@ -156,6 +170,7 @@ base::Result<MergedSuite> merge_suites(const std::vector<std::string>& folders,
   const auto count = first.identity.shard.count;
   out.identity.shard = {};
   out.lost = std::move(parts->lost);
+  out.removed = std::move(parts->removed);
   for (std::uint32_t i = 1; i <= count; ++i) {
     if (!parts->by_index.contains(i)) out.missing.push_back({i, count});
   }

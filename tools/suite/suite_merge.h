@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct MergedSuite {
   std::vector<CaseResult> results;  // parallel; of a shard that is not there: kNotFinished
   std::vector<Shard> missing;       // no folder has these
   std::vector<std::string> lost;    // folders without results that can be read
+  std::set<std::string> removed;    // cases that a shard has told to be gone
 };
 
 /// Reads the folders of shards (--out of each). One that is absent, empty or cut short is a shard

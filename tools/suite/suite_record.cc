@@ -177,6 +177,7 @@ void SuiteRecord::forget_removed() {
     if (!one.is_removed) continue;
     stored_.cases.erase(one.name());
     stored_.known.erase(one.name());
+    stored_.removed.insert(one.name());
   }
 }
 

@@ -44,7 +44,8 @@ Json to_json(const SuiteIdentity& identity) {
           {"only", identity.only},
           {"fast", identity.fast},
           {"allow_commands", identity.allow_commands},
-          {"allow_outside", identity.allow_outside}};
+          {"allow_outside", identity.allow_outside},
+          {"ledger", identity.ledger}};
 }
 
 SuiteIdentity identity_from_json(const Json& json) {
@@ -61,6 +62,7 @@ SuiteIdentity identity_from_json(const Json& json) {
   read(json, "fast", out.fast);
   read(json, "allow_commands", out.allow_commands);
   read(json, "allow_outside", out.allow_outside);
+  read(json, "ledger", out.ledger);
   return out;
 }
 
@@ -164,6 +166,16 @@ std::string words(const std::vector<std::string>& texts) {
 
 }  // namespace
 
+std::vector<std::string> normal_paths(std::vector<std::string> paths) {
+  for (auto& path : paths) {
+    path = fs::path(path).lexically_normal().string();
+    while (path.size() > 1 && path.ends_with('/')) path.pop_back();
+  }
+  std::sort(paths.begin(), paths.end());
+  paths.erase(std::unique(paths.begin(), paths.end()), paths.end());
+  return paths;
+}
+
 std::string difference(const SuiteIdentity& a, const SuiteIdentity& b) {
   // Files of the first form say nothing of it.
   if (a.program.empty() || b.program.empty()) return "one was made by an older version";
@@ -180,7 +192,8 @@ std::string difference(const SuiteIdentity& a, const SuiteIdentity& b) {
   if (a.shard.count != b.shard.count) {
     return fmt::format("{} shards and {}", a.shard.count, b.shard.count);
   }
-  if (a.paths != b.paths) return fmt::format("{} and {}", words(a.paths), words(b.paths));
+  if (normal_paths(a.paths) != normal_paths(b.paths))
+    return fmt::format("{} and {}", words(a.paths), words(b.paths));
   if (a.only != b.only) return fmt::format("--only `{}` and `{}`", a.only, b.only);
   const auto one_with = [](const char* option) {
     return fmt::format("one with {} and one without", option);
@@ -222,6 +235,9 @@ base::Result<StoredResults> read_results(const fs::path& folder, base::Diagnosti
   std::vector<std::string> known;
   read_texts(json, "known", known);
   out.known.insert(known.begin(), known.end());
+  std::vector<std::string> removed;
+  read_texts(json, "removed", removed);
+  out.removed.insert(removed.begin(), removed.end());
   return out;
 }
 
@@ -251,6 +267,7 @@ base::Status write_results(const fs::path& folder, StoredResults stored,
   Json json = {
       {"schema_version", 2}, {"suite", to_json(stored.identity)}, {"cases", std::move(list)}};
   if (!stored.known.empty()) json["known"] = stored.known;
+  if (!stored.removed.empty()) json["removed"] = stored.removed;
   // Names are bytes of paths: what is no UTF-8 is replaced rather than refused.
   return base::write_file_atomically(folder / kResultsFile, base::json_text(json, 2) + '\n', sink);
 }

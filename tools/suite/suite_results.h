@@ -26,6 +26,7 @@ struct SuiteIdentity {
   std::string only;
   bool fast = false;
   bool allow_commands = false, allow_outside = false;
+  std::string ledger{};  // SHA-256 of the ledger that cases were judged by; empty: by none
 
   /// Is it the same except for permissions, of which it has more?
   bool permits_more_than(const SuiteIdentity& other) const;
@@ -49,7 +50,12 @@ struct StoredResults {
   StoredCases cases;
   /// All names that earlier suites of the same paths knew, where this one looked at fewer cases.
   std::set<std::string> known = {};
+  /// Names of cases that this suite has told to be gone, for a merge of shards.
+  std::set<std::string> removed = {};
 };
+
+/// Paths of a suite, however they are written: `./a/` is `a`, and their order says nothing.
+std::vector<std::string> normal_paths(std::vector<std::string> paths);
 
 /// The file in the suite's output folder that --resume, --rerun-failed and --merge read.
 inline constexpr const char* kResultsFile = "results.json";

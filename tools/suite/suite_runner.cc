@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "compiler/base/json.h"
+#include "compiler/base/sha256.h"
 #include "compiler/base/shown_text.h"
 #include "harness/config/scenario.h"
 #include "tools/suite/case_process.h"
@@ -105,6 +106,12 @@ void add_clause(const std::string& clause, std::string& problem) {
   problem.insert(std::min(problem.find('\n'), problem.size()), "; the discrepancy is " + clause);
 }
 
+/// "x/y_z.yaml" -> "x_y_z.yaml"
+std::string run_folder_name(std::string file) {
+  std::replace(file.begin(), file.end(), '/', '_');
+  return file;
+}
+
 /// Makes room for a new run. Removes only files that a run has left there.
 bool clear_run_folder(const fs::path& folder) {
   std::error_code error;
@@ -138,8 +145,10 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
   if (expect.rate) run_rates(one, expect, options, footprint, stop, result);
   if (expect.rate && (!expect.of_run() || result.outcome == Outcome::kError)) return;
   if (options.ends_early && !result.problems.empty()) return;
-  auto name = one.file;
-  std::replace(name.begin(), name.end(), '/', '_');
+  auto name = run_folder_name(one.file);
+  if (options.shared_folders.contains(name)) {
+    name += '-' + base::sha256_hex(one.file).substr(0, 8);
+  }
   const auto folder = options.out / name;
   if (!clear_run_folder(folder)) {
     result.outcome = Outcome::kError;
@@ -249,6 +258,16 @@ bool is_open(const CaseResult& result) {
 }
 
 }  // namespace
+
+std::set<std::string> shared_run_folders(const std::vector<SuiteCase>& cases) {
+  std::set<std::string> seen, shared;
+  for (const auto& one : cases) {
+    const bool is_scenario = std::holds_alternative<harness::Expectation>(one.check);
+    auto name = run_folder_name(one.file);
+    if (is_scenario && !seen.insert(name).second) shared.insert(std::move(name));
+  }
+  return shared;
+}
 
 CaseResult run_case(const SuiteCase& one, const RunnerOptions& options,
                     const std::atomic<bool>& stop) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,7 +31,14 @@ struct RunnerOptions {
   bool ends_early = false;
   std::vector<std::string> elsewhere = {};  // options of commands that simulate: where workers are
   std::optional<double> time_limit_s = {};  // of the processes of a scenario without one of its own
+  /// Names of run folders that several cases would have (shared_run_folders). These get a hash of
+  /// the case's file at the end.
+  std::set<std::string> shared_folders = {};
 };
+
+/// Names of the run folders that more than one scenario would have: those of `x/y_z.yaml` and
+/// `x_y/z.yaml`.
+std::set<std::string> shared_run_folders(const std::vector<SuiteCase>& cases);
 
 /// Runs one case in processes of its own, again where it did not pass and `retries` allow it, so
 /// that neither a crash nor a limit ends the suite, and compares the answer with the expectation. A
