@@ -277,11 +277,21 @@ base::Result<std::vector<std::optional<FormulaId>>> ground_constraint(
   return out;
 }
 
+/// By timepoint n: may an execution end there, given where control is at a cut (encode_plan)? The
+/// state in which the plan comes to a cut is one of an execution; later ones are not.
+std::vector<FormulaId> known_ends(const std::vector<FormulaId>& cut, GroundModel& model) {
+  std::vector<FormulaId> known(static_cast<std::size_t>(model.horizon()) + 1,
+                               model.formulas().truth());
+  for (std::size_t n = 1; n < known.size() && n <= cut.size(); ++n) known[n] = ~cut[n - 1];
+  return known;
+}
+
 /// Defines an atom `hit` for every timepoint from `first` on: all constraints
-/// hold there. An instance that names a timepoint before 0 does not hold.
+/// hold there, and an execution may end there (`known`). An instance that names a timepoint before
+/// 0 does not hold.
 base::Status encode_constraints(const std::vector<StateConstraint>& constraints, Timepoint first,
-                                GroundModel& model, FormulaGrounder& grounder,
-                                base::DiagnosticSink& sink) {
+                                const std::vector<FormulaId>& known, GroundModel& model,
+                                FormulaGrounder& grounder, base::DiagnosticSink& sink) {
   const auto origin = model.add_origin(constraints.front().source, OriginKind::kStateConstraint);
   auto& formulas = model.formulas();
   std::vector<std::vector<FormulaId>> parts(static_cast<std::size_t>(model.horizon()) + 1);
@@ -296,15 +306,18 @@ base::Status encode_constraints(const std::vector<StateConstraint>& constraints,
     if (!ever) return sink.error(codes::kNothingToSay, constraint.source, model.horizon());
   }
   for (Timepoint t = first; t <= model.horizon(); ++t) {
+    const auto n = static_cast<std::size_t>(t);
+    parts[n].push_back(known[n]);
     const auto hit = model.plan_atom(AtomKind::kHit, {}, t);
-    const auto all = formulas.conjunction(std::move(parts[static_cast<std::size_t>(t)]));
+    const auto all = formulas.conjunction(std::move(parts[n]));
     model.require(formulas.equivalence(hit, all), origin);
   }
   return base::Unit{};
 }
 
 /// The atoms `hit` of a property about traces, which ends them where it is violated.
-base::Status encode_violation(const StateConstraint& property, bool has_plan, GroundModel& model,
+base::Status encode_violation(const StateConstraint& property, bool has_plan,
+                              const std::vector<FormulaId>& known, GroundModel& model,
                               FormulaGrounder& grounder, base::DiagnosticSink& sink) {
   const auto origin = model.add_origin(property.source, OriginKind::kStateConstraint);
   std::vector<FormulaId> hit, complete;
@@ -313,7 +326,8 @@ base::Status encode_violation(const StateConstraint& property, bool has_plan, Gr
     complete.push_back(has_plan ? ~model.plan_atom(AtomKind::kRunning, {}, t)
                                 : model.formulas().constant(t == model.horizon()));
   }
-  return TemporalEncoder(property, origin, model, grounder, sink).require_violation(hit, complete);
+  return TemporalEncoder(property, origin, model, grounder, sink)
+      .require_violation(hit, complete, known);
 }
 
 /// Records how the model was made (producer, options, sources), so that it can be read without the
@@ -389,16 +403,20 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
   FormulaGrounder grounder(*ground, input.ground, sink);
   const bool is_temporal = !constraints->empty() && constraints->front().violated;
   const auto running = is_temporal ? RunningAtoms::kEverywhere : RunningAtoms::kAtHorizon;
-  if (plan &&
-      !encode_plan(plan->graph, plan->formulas, plan->events, running, *ground, grounder, sink)) {
-    return sink.already_reported();
+  std::vector<FormulaId> cut;
+  if (plan) {
+    auto encoded =
+        encode_plan(plan->graph, plan->formulas, plan->events, running, *ground, grounder, sink);
+    if (!encoded) return sink.already_reported();
+    cut = *std::move(encoded);
   }
+  const auto known = known_ends(cut, *ground);
   if (is_temporal) {
-    if (!encode_violation(constraints->front(), plan.has_value(), *ground, grounder, sink)) {
+    if (!encode_violation(constraints->front(), plan.has_value(), known, *ground, grounder, sink)) {
       return sink.already_reported();
     }
   } else if (!constraints->empty() && !encode_constraints(*constraints, input.hits_at_start ? 0 : 1,
-                                                          *ground, grounder, sink)) {
+                                                          known, *ground, grounder, sink)) {
     return sink.already_reported();
   }
   for (const auto& objective : objectives) {

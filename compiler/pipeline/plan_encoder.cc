@@ -232,7 +232,9 @@ class PlanEncoder {
     }
   }
 
-  base::Status run(const std::set<std::string>& plan_events, RunningAtoms running) {
+  base::Result<std::vector<FormulaId>> run(const std::set<std::string>& plan_events,
+                                           RunningAtoms running) {
+    std::vector<FormulaId> cut;
     if (!resolve_events()) return sink_.already_reported();
     const auto count = graph_.locations.size() + graph_.terminals.size() + graph_.branches.size();
     auto incoming = std::vector<std::vector<FormulaId>>(count);
@@ -242,6 +244,7 @@ class PlanEncoder {
       if (!decide(t, incoming)) return sink_.already_reported();
       const auto here = place_control(incoming, t);
       const bool at_horizon = t == model_.horizon();
+      cut.push_back(cut_off(here));
       if (at_horizon || running == RunningAtoms::kEverywhere) mark_running(here, t);
       if (at_horizon) break;
       perform(here, t, plan_events);
@@ -252,7 +255,7 @@ class PlanEncoder {
         return sink_.already_reported();
       }
     }
-    return base::Unit{};
+    return cut;
   }
 
  private:
@@ -434,15 +437,27 @@ class PlanEncoder {
     step.finish(origin_of(0));
   }
 
+  bool is_cut(NodeNumber node) const {
+    if (node < graph_.locations.size()) return false;
+    const auto id = graph_.terminals.id_at(node - graph_.locations.size());
+    return graph_.terminals[id].kind == TerminalKind::kBound;
+  }
+
+  /// Control is where unrolling was cut, now or since an earlier timepoint.
+  FormulaId cut_off(const std::vector<std::optional<FormulaId>>& here) {
+    std::vector<FormulaId> cut;
+    for (NodeNumber node = 0; node < here.size(); ++node) {
+      if (here[node] && is_cut(node)) cut.push_back(*here[node]);
+    }
+    return model_.formulas().disjunction(std::move(cut));
+  }
+
   /// True at t if the plan would go on: at a location, or where unrolling was cut.
   void mark_running(const std::vector<std::optional<FormulaId>>& here, Timepoint t) {
     std::vector<FormulaId> open;
     for (NodeNumber node = 0; node < here.size(); ++node) {
       if (!here[node]) continue;
-      if (node >= graph_.locations.size()) {
-        const auto id = graph_.terminals.id_at(node - graph_.locations.size());
-        if (graph_.terminals[id].kind != TerminalKind::kBound) continue;
-      }
+      if (node >= graph_.locations.size() && !is_cut(node)) continue;
       open.push_back(*here[node]);
     }
     const auto running = model_.plan_atom(AtomKind::kRunning, {}, t);
@@ -466,10 +481,12 @@ class PlanEncoder {
 
 }  // namespace
 
-base::Status encode_plan(const PlanGraph& graph, const PlanFormulas& formulas,
-                         const std::set<std::string>& plan_events, RunningAtoms running,
-                         GroundModel& model, FormulaGrounder& grounder,
-                         base::DiagnosticSink& sink) {
+base::Result<std::vector<FormulaId>> encode_plan(const PlanGraph& graph,
+                                                 const PlanFormulas& formulas,
+                                                 const std::set<std::string>& plan_events,
+                                                 RunningAtoms running, GroundModel& model,
+                                                 FormulaGrounder& grounder,
+                                                 base::DiagnosticSink& sink) {
   return PlanEncoder(graph, formulas, model, grounder, sink).run(plan_events, running);
 }
 

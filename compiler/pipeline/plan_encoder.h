@@ -25,9 +25,14 @@ enum class RunningAtoms : std::uint8_t { kAtHorizon, kEverywhere };
 /// `plan_events` (all symbols that the binding table can produce) happen only where a location
 /// performs them; other events are the model's own. Size: reachable (location, timepoint) pairs
 /// times edges.
-base::Status encode_plan(const PlanGraph& graph, const PlanFormulas& formulas,
-                         const std::set<std::string>& plan_events, RunningAtoms running,
-                         GroundModel& model, FormulaGrounder& grounder, base::DiagnosticSink& sink);
+/// Returns, by timepoint: control is where unrolling was cut. From the timepoint at which it comes
+/// there nothing is known of the plan, and what stands behind it is no execution.
+base::Result<std::vector<FormulaId>> encode_plan(const PlanGraph& graph,
+                                                 const PlanFormulas& formulas,
+                                                 const std::set<std::string>& plan_events,
+                                                 RunningAtoms running, GroundModel& model,
+                                                 FormulaGrounder& grounder,
+                                                 base::DiagnosticSink& sink);
 
 /// The plan's steps for the artifact, by location number.
 std::vector<PlanPerform> plan_steps(const PlanGraph& graph);

@@ -16,7 +16,9 @@
 #include "compiler/pipeline/temporal_encoder.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "compiler/base/codes/grounding.h"
 
@@ -36,7 +38,7 @@ TemporalEncoder::TemporalEncoder(const StateConstraint& formula, std::uint32_t o
 std::optional<TemporalEncoder::Values> TemporalEncoder::fulfilled() {
   auto root = tree_.add(formula_.formula.formula, false);
   if (!root) return std::nullopt;
-  if (!settle(*root)) return std::nullopt;
+  if (!settle(*root) || !says_something()) return std::nullopt;
   return tree_[*root].looks_on ? fulfilled(*root) : nodes_[*root].ends;
 }
 
@@ -97,18 +99,22 @@ std::optional<TemporalEncoder::Values> TemporalEncoder::by_automaton(Number part
 }
 
 base::Status TemporalEncoder::require_violation(const std::vector<FormulaId>& hit,
-                                                const std::vector<FormulaId>& complete) {
+                                                const std::vector<FormulaId>& complete,
+                                                const std::vector<FormulaId>& known) {
   auto root = tree_.add(formula_.formula.formula, true);
   if (!root) return sink_.already_reported();
   if (!tree_[*root].looks_on) root = tree_.wrap(Kind::kEventually, {*root});
-  if (!settle(*root)) return sink_.already_reported();
+  if (!settle(*root) || !says_something()) return sink_.already_reported();
   const View view{model_.horizon(), &hit, &complete};
   settle_future(view);
   const auto violated = any(*root, 0, view).value_or(formulas_.falsity());
   // A hit that nothing were said of would have no variable.
   const bool in_any_case = violated == formulas_.truth();
-  for (const auto end : hit) {
-    model_.require(in_any_case ? end : formulas_.implication(end, violated), origin_);
+  for (std::size_t n = 0; n < hit.size(); ++n) {
+    const auto may_end = formulas_.conjunction(violated, known[n]);
+    model_.require(in_any_case ? formulas_.equivalence(hit[n], known[n])
+                               : formulas_.implication(hit[n], may_end),
+                   origin_);
   }
   return base::Unit{};
 }
@@ -133,6 +139,26 @@ bool TemporalEncoder::settle(Number root) {
     } else if (!tree_[number].looks_on) {
       settle_past(number);
     }
+  }
+  return true;
+}
+
+/// A state formula of which no instance names timepoints that there are makes what stands around it
+/// true or false by being left out, so it is reported. To be asked behind `settle` of the root.
+bool TemporalEncoder::says_something() {
+  std::map<std::size_t, std::pair<TypedFormulaId, bool>> said;  // by formula
+  for (const auto number : wanted_) {
+    if (tree_[number].kind != Kind::kLeaf) continue;
+    const auto& ends = nodes_[number].ends;
+    const bool any = std::any_of(ends.begin(), ends.end(), [](const auto& v) { return bool(v); });
+    const auto formula = tree_[number].formula;
+    auto& before = said.try_emplace(formula.index(), formula, false).first->second.second;
+    before = before || any;
+  }
+  for (const auto& [number, entry] : said) {
+    if (entry.second) continue;
+    sink_.error(codes::kNothingToSay, tree_.source(entry.first), model_.horizon());
+    return false;
   }
   return true;
 }

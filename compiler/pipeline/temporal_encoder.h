@@ -35,10 +35,11 @@ class TemporalEncoder {
 
   /// Where `hit` of n is true, and of no earlier timepoint, the trace from 0 to n violates the
   /// property: either n is `complete` and the formula false of it, or it is false however the trace
-  /// goes on. A property that only looks back is to hold at all timepoints. Hits are
-  /// forced only where every trace violates it.
+  /// goes on. A property that only looks back is to hold at all timepoints. There is no hit where
+  /// an end is not `known`. Hits are forced only where every trace violates it.
   base::Status require_violation(const std::vector<FormulaId>& hit,
-                                 const std::vector<FormulaId>& complete);
+                                 const std::vector<FormulaId>& complete,
+                                 const std::vector<FormulaId>& known);
 
  private:
   using Kind = TemporalTree::Kind;
@@ -55,6 +56,7 @@ class TemporalEncoder {
   std::optional<Values> fulfilled(Number part);
   std::optional<Values> by_automaton(Number part);
   bool settle(Number root);
+  bool says_something();
   bool settle_leaf(Number number);
   bool looks_ahead(FormulaId formula, Timepoint t) const;
   FormulaId at_last(FormulaId formula, Timepoint t, bool nothing_happens) const;

@@ -272,8 +272,10 @@ class Campaign {
     }
     if (found == "all traces explored") return text + "the solver finds no other trace";
     if (found == "complete up to bound") {
-      return text + fmt::format("the solver finds no other trace up to the horizon of {}",
-                                scenario_.horizon);
+      const auto left_out = traces_.reservation();
+      return text + fmt::format("the solver finds no other trace up to the horizon of {}{}",
+                                scenario_.horizon,
+                                left_out.empty() ? "" : fmt::format(" ({})", left_out));
     }
     return text + "the model may have other traces";
   }

@@ -315,6 +315,9 @@ class LoopCampaign {
                                       : CampaignVerdict::kInconclusive;
     stream.simulations = tally_.executions() + stream.loop->guided.value_or(0);
     claim_executions(scenario_, tally_.runs(), tally_.law().drawn(), stream);
+    const auto left_out = feed_.reservation();
+    const bool is_claimed = !stream.claim.empty() && stream.loop->unfinished == 0;
+    if (is_claimed && !left_out.empty()) stream.claim += fmt::format(" ({})", left_out);
     if (found != nullptr && found->record.visit) stream.claim = kFoundByVisit;
     if (feed_.plan().performs().empty()) {
       stream.caveats.emplace_back("the plan performs nothing: initial states alone were compared");
@@ -336,6 +339,9 @@ class LoopCampaign {
     using CoverEnd = CoverResult::End;
     if (cover.end == CoverEnd::kShown) result_.exploration = to_string(cover.end);
     if (cover.end == CoverEnd::kRare) result_.exploration = "complete up to bound";
+    if (cover.end == CoverEnd::kShown && !feed_.reservation().empty()) {
+      result_.exploration = "complete up to bound";
+    }
   }
 
   base::Result<CampaignResult> finished(bool interrupted) {
@@ -355,6 +361,7 @@ class LoopCampaign {
     result_.interrupted = interrupted;
     fill_cover();
     fill_stream();
+    result_.bounds = feed_.bounds();
     result_.verdict = interrupted && stream_.verdict != CampaignVerdict::kDiscrepancy
                           ? CampaignVerdict::kInconclusive
                           : stream_.verdict;

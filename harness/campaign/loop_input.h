@@ -78,6 +78,10 @@ class LoopFeed {
   virtual runtime::Symbols symbols() const = 0;
   /// The performs of one execution that the model was compiled for.
   virtual std::int64_t max_performs() const = 0;
+  /// Executions of the plan that are never made, one sentence each, and what a claim leaves out of
+  /// it in a few words: "not of every order". Empty: nothing is left out.
+  virtual std::vector<std::string> bounds() const { return {}; }
+  virtual std::string reservation() const { return {}; }
   /// The states that the model can begin in, but for those that the scenario gives no weight and
   /// those that no start can be in, each as the true ones of `fluents`. Reports that there are too
   /// many, or none, and what is wrong with the weights; nothing if it was stopped.

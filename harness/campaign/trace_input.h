@@ -83,8 +83,12 @@ class TraceFeed {
   /// The completeness of the search once `next` has returned none: "all traces explored", "complete
   /// up to bound" or "stopped".
   virtual std::string exploration() const = 0;
-  /// Why it is complete up to a bound only, one sentence each: the forms of the plan that were cut.
+  /// Why it is complete up to a bound only, one sentence each: the forms of the plan that were cut,
+  /// and executions of the plan that are not explored.
   virtual std::vector<std::string> bounds() const { return {}; }
+  /// The part of the plan that no claim about all traces covers, in a few words: "not of every
+  /// order". Empty: nothing is left out.
+  virtual std::string reservation() const { return {}; }
   /// The ground fluents and events of the model, for all its traces.
   virtual runtime::Symbols symbols() const = 0;
   /// The initial states that lead to the events of `trace`, which was given, as far as these

@@ -112,6 +112,7 @@ std::string rates_text(const RareRatesResult& result) {
   }
   for (const auto& bound : result.bounds) out += fmt::format("\nbound: {}\n", bound);
   if (result.complete && result.traces.empty()) out += "\nno trace, so nothing was simulated\n";
+  for (const auto& bound : result.bounds) out += fmt::format("\nnot all traces: {}\n", bound);
   return out;
 }
 

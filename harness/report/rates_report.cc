@@ -204,6 +204,7 @@ std::string rates_text(const RatesResult& result) {
   }
   for (const auto& bound : result.bounds) out += fmt::format("\nbound: {}\n", bound);
   if (result.complete && result.traces.empty()) out += "\nno trace, so nothing was simulated\n";
+  for (const auto& bound : result.bounds) out += fmt::format("\nnot all traces: {}\n", bound);
   if (!result.complete) out += "\nstopped before all runs were made\n";
   return out;
 }

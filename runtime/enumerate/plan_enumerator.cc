@@ -194,6 +194,7 @@ std::optional<Trace> PlanEnumerator::next() {
         finish();
         return std::nullopt;
       }
+      if (n_ == 0 && first_ == 1 && !note_cuts(0)) return std::nullopt;
       orders_ = orders_of(++n_);
       guard_ = session_->lengths().ends(n_);
     }
@@ -214,6 +215,7 @@ std::optional<Trace> PlanEnumerator::next() {
       const auto retired = ~*guard_;
       session_->add_clause(std::span(&retired, 1));
       guard_.reset();
+      if (!note_cuts(n_)) return std::nullopt;
       continue;
     }
     const auto head = assumptions.size();
@@ -386,13 +388,54 @@ TraceFrom PlanEnumerator::from(const Trace& trace, std::span<const compiler::Flu
   return out;
 }
 
-/// Is there an execution that never meets the constraints and goes on beyond the horizon?
-void PlanEnumerator::finish() {
-  done_ = true;
+/// No hit up to `n`, unless all hits count.
+std::vector<Literal> PlanEnumerator::no_hit_until(Timepoint n) const {
   std::vector<Literal> unmet;
-  for (Timepoint t = first_; t <= n_ && !options_.all_hits; ++t) {
+  for (Timepoint t = first_; t <= n && !options_.all_hits; ++t) {
     unmet.push_back(~*index_.hit(t));
   }
+  return unmet;
+}
+
+/// Notes the cuts to which an execution comes by `n` without having met the constraints. It is
+/// asked of prefixes that the model without its plan can continue, as for traces: nothing is known
+/// of the plan behind a cut. False, and done: the solver was stopped.
+bool PlanEnumerator::note_cuts(Timepoint n) {
+  std::vector<std::pair<std::size_t, Literal>> open;
+  for (std::size_t cut = 0; cut < session_->model().plan_cuts.size(); ++cut) {
+    if (contains(cuts_, cut)) continue;
+    const auto there = index_.at(compiler::PlanCutId(static_cast<std::uint32_t>(cut)), n);
+    if (there) open.emplace_back(cut, *there);
+  }
+  auto status = SolveStatus::kSatisfiable;
+  while (!open.empty() && status == SolveStatus::kSatisfiable) {
+    const auto wanted = session_->new_variable();
+    std::vector<Literal> clause = {~wanted};
+    for (const auto& [cut, there] : open) clause.push_back(there);
+    session_->add_clause(clause);
+    auto assumptions = no_hit_until(n);
+    assumptions.push_back(wanted);
+    status = session_->solve_whole(n, assumptions);
+    if (status == SolveStatus::kSatisfiable) {
+      std::erase_if(open, [&](const auto& entry) {
+        if (!session_->value(entry.second)) return false;
+        cuts_.push_back(entry.first);
+        return true;
+      });
+    }
+    const auto retired = ~wanted;
+    session_->add_clause(std::span(&retired, 1));
+  }
+  std::sort(cuts_.begin(), cuts_.end());
+  done_ = done_ || status == SolveStatus::kUnknown;
+  return status != SolveStatus::kUnknown;
+}
+
+/// Is there an execution that never meets the constraints and goes on beyond the horizon, or behind
+/// a cut?
+void PlanEnumerator::finish() {
+  done_ = true;
+  const auto unmet = no_hit_until(n_);
   const auto running = index_.running(n_);
   auto going_on = unmet;
   if (running) going_on.push_back(*running);
@@ -404,10 +447,13 @@ void PlanEnumerator::finish() {
   switch (session_->solve(n_, going_on)) {
     case SolveStatus::kUnsatisfiable:
       note_refuted(broken);
-      exploration_ = Exploration::kAllTracesExplored;
+      open_ends_.cuts = cuts_;
+      exploration_ =
+          cuts_.empty() ? Exploration::kAllTracesExplored : Exploration::kCompleteUpToBound;
       break;
     case SolveStatus::kSatisfiable:
-      if (find_open_ends(unmet, running.has_value())) {
+      if (!running || find_step(unmet) != SolveStatus::kUnknown) {
+        open_ends_.cuts = cuts_;
         exploration_ = Exploration::kCompleteUpToBound;
       } else {
         open_ends_ = {};  // half of them would say that there are no others
@@ -416,27 +462,6 @@ void PlanEnumerator::finish() {
     case SolveStatus::kUnknown:
       break;
   }
-}
-
-/// False if the solver was stopped on the way.
-bool PlanEnumerator::find_open_ends(std::span<const Literal> unmet, bool running) {
-  return find_cuts(unmet) != SolveStatus::kUnknown &&
-         (!running || find_step(unmet) != SolveStatus::kUnknown);
-}
-
-/// Asks for every cut by itself whether some execution comes to it.
-SolveStatus PlanEnumerator::find_cuts(std::span<const Literal> unmet) {
-  std::vector<Literal> assumptions(unmet.begin(), unmet.end());
-  for (std::size_t cut = 0; cut < session_->model().plan_cuts.size(); ++cut) {
-    const auto there = index_.at(compiler::PlanCutId(static_cast<std::uint32_t>(cut)), n_);
-    if (!there) continue;
-    assumptions.push_back(*there);
-    const auto status = session_->solve(n_, assumptions);
-    assumptions.pop_back();
-    if (status == SolveStatus::kUnknown) return status;
-    if (status == SolveStatus::kSatisfiable) open_ends_.cuts.push_back(cut);
-  }
-  return open_ends_.cuts.empty() ? SolveStatus::kUnsatisfiable : SolveStatus::kSatisfiable;
 }
 
 /// The first step at which some execution stands at the horizon.

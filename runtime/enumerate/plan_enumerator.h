@@ -44,7 +44,7 @@ struct PlanEnumeratorOptions {
 
 /// Where executions go on that were not followed: none of them met the constraints before.
 struct OpenEnds {
-  std::vector<std::size_t> cuts;    // of CompiledModel::plan_cuts: reached within the horizon
+  std::vector<std::size_t> cuts;    // of CompiledModel::plan_cuts, ascending: reached
   std::optional<std::size_t> step;  // the first of CompiledModel::plan that would come next
 };
 
@@ -132,9 +132,9 @@ class PlanEnumerator {
   SolveStatus find_settled(Timepoint n, const Orders& orders,
                            const std::vector<Literal>& assumptions,
                            const std::vector<Literal>& searched, std::vector<Literal>& fixed);
+  std::vector<Literal> no_hit_until(Timepoint n) const;
+  bool note_cuts(Timepoint n);
   void finish();
-  bool find_open_ends(std::span<const Literal> unmet, bool running);
-  SolveStatus find_cuts(std::span<const Literal> unmet);
   SolveStatus find_step(std::span<const Literal> unmet);
 
   SolverSession* session_;
@@ -151,6 +151,7 @@ class PlanEnumerator {
   bool done_ = false;
   std::optional<Timepoint> dead_end_;
   Exploration exploration_ = Exploration::kStopped;
+  std::vector<std::size_t> cuts_;  // found so far, ascending
   OpenEnds open_ends_;
 };
 

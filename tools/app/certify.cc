@@ -7,10 +7,8 @@
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
-#include "compiler/pipeline/compile.h"
 #include "runtime/certify/certificate.h"
 #include "runtime/enumerate/plan_enumerator.h"
-#include "tools/app/trace_writer.h"
 
 namespace parallax::tools {
 namespace {
@@ -26,54 +24,6 @@ std::string usual_file(const std::string& model) {
 bool is_whole(const std::string& exploration) { return exploration != "stopped"; }
 
 }  // namespace
-
-std::string PlanReservations::verdict() const {
-  std::string out;
-  if (orders) out += "not of every order, ";
-  if (meaning) out += "approximated, ";
-  if (cut) out += "within the bounds of loops and calls, ";
-  return out + "no proof";
-}
-
-std::vector<std::pair<std::string, bool>> PlanReservations::fields() const {
-  std::vector<std::pair<std::string, bool>> out;
-  if (orders) out.emplace_back("every_order", false);
-  if (meaning) out.emplace_back("approximated", true);
-  if (cut) out.emplace_back("cut", true);
-  return out;
-}
-
-bool may_be_cut(const runtime::CompiledModel& model) {
-  const compiler::AtomIndex index(model);
-  for (std::size_t cut = 0; cut < model.plan_cuts.size(); ++cut) {
-    if (index.at(compiler::PlanCutId(static_cast<std::uint32_t>(cut)), model.horizon)) return true;
-  }
-  return false;
-}
-
-namespace {
-
-void tell_gap(const compiler::PlanGap& gap, Context& context) {
-  const bool orders = gap.kind == compiler::GapKind::kOrder;
-  context.remark(fmt::format("{}: {} at {}", orders ? "not explored" : "approximated", gap.text,
-                             context.files().place(gap.source)));
-}
-
-}  // namespace
-
-void tell_reservations(const compiler::Compilation& compilation, Context& context) {
-  if (compilation.plan) {
-    for (const auto& gap : compilation.plan->gaps) tell_gap(gap, context);
-  }
-  const auto& model = compilation.model;
-  const compiler::AtomIndex index(model);
-  for (std::size_t cut = 0; cut < model.plan_cuts.size(); ++cut) {
-    const compiler::PlanCutId id(static_cast<std::uint32_t>(cut));
-    if (!index.at(id, model.horizon)) continue;
-    context.remark(fmt::format("unrolling was cut: `{}` at {}", model.plan_cuts[cut].form,
-                               place_text(model.plan_cuts[cut].place)));
-  }
-}
 
 TraceCertifier::TraceCertifier(const CertifyOption& option, const std::vector<std::string>& models,
                                const runtime::CompiledModel& model, Context& context)
@@ -139,13 +89,13 @@ void TraceCertifier::rest_on_symmetry() {
 }
 
 void TraceCertifier::note_gaps(const std::optional<compiler::PlanGraph>& plan, bool tells) {
-  if (!plan || plan->gaps.empty()) return;
-  for (const auto& gap : plan->gaps) {
-    const bool orders = gap.kind == compiler::GapKind::kOrder;
-    (orders ? reservations_.orders : reservations_.meaning) = true;
-    if (tells) tell_gap(gap, context_);
-  }
+  const auto gaps = reservations_of(plan);
+  if (!gaps.any()) return;
+  reservations_.orders = reservations_.orders || gaps.orders;
+  reservations_.meaning = reservations_.meaning || gaps.meaning;
   verdict_ = reservations_.verdict();
+  if (!tells) return;
+  for (const auto& text : gap_texts(plan, context_)) context_.remark(text);
 }
 
 void TraceCertifier::note_cut() {

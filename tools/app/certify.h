@@ -12,10 +12,7 @@
 #include "runtime/session/solver_session.h"
 #include "runtime/solver/sat_solver.h"
 #include "tools/app/context.h"
-
-namespace parallax::compiler {
-struct Compilation;
-}
+#include "tools/app/plan_reservations.h"
 
 namespace parallax::tools {
 
@@ -27,28 +24,6 @@ struct CertifyOption {
 
 /// The verdict on a claim that rests on an argument by symmetry.
 inline constexpr std::string_view kBySymmetry = "symmetry, not proof checked";
-
-/// Why a claim about a plan has no proof although the search found nothing against it: the real
-/// plan may have executions that were not explored.
-struct PlanReservations {
-  bool orders = false;   // of branches, of which only some were explored
-  bool meaning = false;  // a form that is taken in another way than the real language may
-  bool cut = false;      // a loop or calls that go on beyond their bound
-
-  bool any() const { return orders || meaning || cut; }
-  /// `not of every order, no proof`, `approximated, no proof`, `within the bounds of loops and
-  /// calls, no proof`, or several of them.
-  std::string verdict() const;
-  /// Names of the JSON fields that tell them, each with its value.
-  std::vector<std::pair<std::string, bool>> fields() const;
-};
-
-/// Can control of the plan be where unrolling was cut, for all that its graph says, at the horizon?
-bool may_be_cut(const runtime::CompiledModel& model);
-
-/// Says on standard error at which places the real plan may have other executions than those that
-/// are explored, and where unrolling was cut. For answers that carry no proof.
-void tell_reservations(const compiler::Compilation& compilation, Context& context);
 
 /// The verdict on a claim that was searched by cubes.
 inline constexpr std::string_view kByCubes = "cubes, not proof checked";

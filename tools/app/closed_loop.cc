@@ -13,6 +13,7 @@
 #include "compiler/base/suggest.h"
 #include "harness/campaign/trial.h"
 #include "tools/app/cover_items.h"
+#include "tools/app/plan_reservations.h"
 #include "tools/app/start_guide.h"
 #include "tools/app/start_weights.h"
 #include "tools/app/trace_feed.h"
@@ -49,6 +50,15 @@ base::Result<std::unique_ptr<ClosedLoop>> ClosedLoop::make(const ScenarioModel& 
 }
 
 std::int64_t ClosedLoop::max_performs() const { return loaded_.compilation.model.horizon; }
+
+/// An execution that comes to a cut is known to be unfinished; it takes no words in advance.
+std::vector<std::string> ClosedLoop::bounds() const {
+  return gap_texts(loaded_.compilation.plan, context_);
+}
+
+std::string ClosedLoop::reservation() const {
+  return reservations_of(loaded_.compilation.plan).words();
+}
 
 base::Result<std::optional<harness::LoopStates>> ClosedLoop::initial_states(
     std::span<const compiler::FluentId> fluents) {

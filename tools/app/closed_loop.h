@@ -25,6 +25,8 @@ class ClosedLoop final : public harness::LoopFeed {
   const harness::ExecutablePlan& plan() const override { return *plan_; }
   runtime::Symbols symbols() const override { return symbols_; }
   std::int64_t max_performs() const override;
+  std::vector<std::string> bounds() const override;
+  std::string reservation() const override;
   base::Result<std::optional<harness::LoopStates>> initial_states(
       std::span<const compiler::FluentId> fluents) override;
   harness::StartGuide* guide(std::uint64_t seed) override;

@@ -12,6 +12,7 @@
 #include "runtime/consequences/abduction.h"
 #include "runtime/explain/contradiction.h"
 #include "runtime/explain/group_solver.h"
+#include "tools/app/plan_reservations.h"
 
 namespace parallax::tools {
 namespace {
@@ -82,6 +83,30 @@ class FactReasons {
   runtime::GroupSolver solver_;
 };
 
+/// The first timepoint before the horizon at which some execution comes to a cut of the plan. Where
+/// the solver was stopped, the first at which one may.
+std::optional<compiler::Timepoint> reached_cut(const CompiledModel& model, const Context& context) {
+  const auto first = first_cut(model);
+  if (!goes_behind_cut(model)) return std::nullopt;
+  runtime::SolverSession session(model, runtime::make_cadical_solver(&context.stop()));
+  const compiler::AtomIndex index(model);
+  for (auto t = *first; t < model.horizon; ++t) {
+    for (std::size_t cut = 0; cut < model.plan_cuts.size(); ++cut) {
+      const auto there = index.at(compiler::PlanCutId(static_cast<std::uint32_t>(cut)), t);
+      if (!there) continue;
+      const auto status = session.solve_whole(t, std::span(&*there, 1));
+      if (status == runtime::SolveStatus::kSatisfiable) return t;
+      if (status == runtime::SolveStatus::kUnknown) return first;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Is the fact about a time of which, behind a cut, nothing is known?
+bool is_behind(const ConsequenceFact& fact, compiler::Timepoint cut) {
+  return fact.time > cut || (fact.happens && fact.time == cut);
+}
+
 bool is_instance(const std::string& ground, const std::string& asked) {
   return ground == asked || base::symbol_of(ground) == asked;
 }
@@ -113,10 +138,13 @@ base::Result<ModelConsequences> find_model_consequences(const CompiledModel& mod
       session, atoms, query.only_always ? runtime::Asked::kAll : runtime::Asked::kAllAndSome);
   std::optional<FactReasons> reasons;
   if (query.why) reasons.emplace(model, asked, context);
-  ModelConsequences out{{}, found.any, found.complete};
+  ModelConsequences out{{}, found.any, found.complete, reached_cut(model, context)};
   for (std::size_t i = 0; i < asked.size(); ++i) {
     auto& fact = asked[i].fact;
     fact.extent = found.extents[i];
+    // Traces that meet constraints end before a cut, but not all of them may be known.
+    const bool shown = model.has_constraints && fact.extent == runtime::Extent::kSome;
+    if (out.cut && is_behind(fact, *out.cut) && !shown) fact.extent = runtime::Extent::kUndecided;
     const bool counts =
         fact.extent == runtime::Extent::kAll || fact.extent == runtime::Extent::kUndecided;
     if (query.only_always && !counts) continue;

@@ -34,6 +34,9 @@ struct ModelConsequences {
   std::vector<ConsequenceFact> facts;
   std::optional<bool> any;  // is there a trace?
   bool complete = true;
+  /// The first timepoint at which an execution comes to where the plan's unrolling was cut. What is
+  /// behind it is undecided.
+  std::optional<compiler::Timepoint> cut = std::nullopt;
 };
 
 /// Reports kUsage where the timepoint lies beyond the horizon, or axioms are asked for of traces

@@ -39,6 +39,8 @@ struct Contradiction {
   bool instances_minimal = false;  // none of the instances can go
   runtime::ProofVerdict proof = runtime::ProofVerdict::kNotFinished;  // that they contradict
   std::vector<std::size_t> clauses;  // the instances, as GroundContradiction has them
+  /// Why nothing is proved of the plan (PlanReservations::verdict); empty: it may be.
+  std::string no_proof = {};
 };
 
 /// Explains why a model has no trace, or none like an observed run. First the minimal sets of its

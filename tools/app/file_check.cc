@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "compiler/artifact/artifact_reader.h"
 #include "compiler/artifact/artifact_writer.h"
 #include "tools/app/dead_retries.h"
 #include "tools/app/scenario_check.h"
@@ -22,15 +21,18 @@ void check_files(const ModelOptions& options, Context& context) {
   std::vector<std::string> models;
   for (const auto& path : options.models) {
     // Reports into the sink; a result says only that there was nothing to report.
+    auto given = options;
+    given.models = {path};
     if (names_scenario(path)) {
-      const auto loaded =
-          load_scenario_model(path, context, {.as_run = true, .lint = options.lint});
+      if (!fits_scenario(given, context)) continue;
+      const auto loaded = load_scenario_model(
+          path, context, {.as_run = true, .lint = options.lint, .given = &given});
       if (!loaded) continue;
       report_dead_retries(loaded->compilation, context);
       report_dead_handlers(loaded->compilation, context);
       check_before_run(*loaded, context);
     } else if (compiler::is_artifact_name(path)) {
-      (void)compiler::load_artifact(path, context.files(), context.sink());
+      (void)load_artifact(given, context);
     } else {
       models.push_back(path);
     }

@@ -36,6 +36,10 @@ struct ModelOptions {
 
 compiler::CompileInput compile_input(const ModelOptions& options, const Context& context);
 
+/// May the options be given with the scenario that they name? Reports the first one that says what
+/// the scenario says itself (kUsage).
+base::Status fits_scenario(const ModelOptions& options, Context& context);
+
 /// Is one of the models a compiled one (`.cnf`)?
 bool names_artifact(const ModelOptions& options);
 /// The compiled model that the options name, read without the front end. Reports a second model,

@@ -367,7 +367,7 @@ bool take_admission(Watch& watch, Admission admission, const MonitorPlace& place
     result.refusal = watch.refusal();
   } else {
     result.verdict = MonitorVerdict::kUndecided;
-    result.undecided_because = watch.belief().undecided_because();
+    result.undecided_because = watch.undecided_because();
   }
   return false;
 }

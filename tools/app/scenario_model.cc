@@ -75,6 +75,14 @@ base::Result<std::vector<base::FileId>> load_scenario_plan(const harness::Scenar
 
 namespace {
 
+/// Steps of unrolling grow with the locations that are asked for.
+compiler::UnrollLimits plan_limits(const ModelOptions& options) {
+  constexpr std::int64_t kSteps = 250;  // for each location
+  auto limits = options.unroll;
+  limits.max_steps = std::max(limits.max_steps, kSteps * limits.max_locations);
+  return limits;
+}
+
 base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scenario,
                                                    const RegionLocator& locator, Context& context) {
   auto& files = context.files();
@@ -98,17 +106,29 @@ base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scen
   return input;
 }
 
+/// Applies the options of the command line that go for a scenario: how its plan is unrolled, where
+/// `load` looks, and another horizon.
+void apply_given(const ModelOptions& given, compiler::CompileInput& input) {
+  for (const auto& folder : given.include_dirs) input.load.include_dirs.emplace_back(folder);
+  if (given.horizon >= 0) input.horizon = given.horizon;
+  if (!input.plan) return;
+  input.plan->limits = plan_limits(given);
+  input.plan->interleave = given.par == "interleave";
+}
+
 /// How a model is compiled beyond what the user says.
 struct Switches {
   bool costs = false;
   std::string emit_pass = {};
   bool folded = false;
   ScenarioNeeds needs = {};
+  const ModelOptions* given = nullptr;  // with a scenario
   void apply(compiler::CompileInput& input) const {
     input.costs = costs;
     input.emit_pass = emit_pass;
     input.folded = folded;
     input.lint = input.lint || needs.lint;
+    if (given != nullptr) apply_given(*given, input);
     if (needs.horizon) input.horizon = *needs.horizon;
     if (!needs.with_plan) input.plan.reset();
     if (!needs.plain) return;
@@ -161,6 +181,10 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
   switches.apply(*input);
   if (needs.execution) scenario->execution = *needs.execution;
   const bool closed = needs.as_run && scenario->execution == harness::Execution::kClosedLoop;
+  if (closed && switches.given != nullptr && switches.given->horizon >= 0) {
+    return sink.error_about(codes::kUsage, path.string(),
+                            "an executed plan goes on to its end: --horizon does not go with it");
+  }
   if (closed) {
     if (!input->plan) {
       const auto& key = scenario->execution_source;
@@ -183,7 +207,8 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
       !check_start_weights(*scenario, *compilation->typed, context)) {
     return sink.already_reported();
   }
-  if (closed) scenario->horizon = compilation->model.horizon;
+  const bool other_horizon = switches.given != nullptr && switches.given->horizon >= 0;
+  if (closed || other_horizon) scenario->horizon = compilation->model.horizon;
   const auto fluents = compiler::names_of(compilation->model.fluents);
   auto events = compiler::names_of(compilation->model.events);
   std::shared_ptr<const harness::SteppedModel> world;
@@ -255,12 +280,9 @@ base::Status add_plan(const ModelOptions& options, std::optional<harness::Scenar
                                    .binding = *bind,
                                    .entry = std::nullopt,
                                    .locator = &*locator,
-                                   .limits = options.unroll,
+                                   .limits = plan_limits(options),
                                    .interleave = options.par == "interleave",
                                    .max_horizon = options.max_horizon};
-  constexpr std::int64_t kSteps = 250;  // for each location
-  auto& limits = input.plan->limits;
-  limits.max_steps = std::max(limits.max_steps, kSteps * limits.max_locations);
   if (!options.plan_entry.empty()) input.plan->entry = options.plan_entry;
   return base::Unit{};
 }
@@ -296,12 +318,11 @@ base::Result<compiler::Compilation> compile(const ModelOptions& options, Context
     return compiled;
   }
   if (options.models.size() == 1 && (first.ends_with(".yaml") || first.ends_with(".yml"))) {
-    if (!options.until.empty()) {
-      return context.sink().error_about(
-          codes::kUsage, first,
-          "the `constraints` of a scenario say where its traces end: --until is for models");
-    }
-    auto loaded = load(first, context, switches, options.property, options.minimize, options.best);
+    if (!fits_scenario(options, context)) return context.sink().already_reported();
+    auto with_options = switches;
+    with_options.given = &options;
+    auto loaded =
+        load(first, context, with_options, options.property, options.minimize, options.best);
     if (!loaded) return context.sink().already_reported();
     return std::move(loaded->compilation);
   }
@@ -330,7 +351,7 @@ base::Result<compiler::Compilation> compile(const ModelOptions& options, Context
 
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path, Context& context,
                                                 const ScenarioNeeds& needs) {
-  return load(path, context, {.needs = needs});
+  return load(path, context, {.needs = needs, .given = needs.given});
 }
 
 std::optional<compiler::CompiledModel> compile_variant(const harness::Scenario& scenario,

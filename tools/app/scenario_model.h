@@ -53,6 +53,7 @@ struct ScenarioNeeds {
   bool with_plan = true;
   std::optional<std::int64_t> horizon = std::nullopt;  // instead of the scenario's
   harness::ScenarioSettings* settings = nullptr;       // as in LoadLimits
+  const ModelOptions* given = nullptr;  // options that apply to it (compile_models); null: none
 };
 
 /// Reads the scenario, compiles model, plan and constraints, and checks the mapping and the actions
@@ -78,7 +79,9 @@ base::Result<compiler::Compilation> compile_with_model(const harness::Scenario& 
                                                        bool constraints, Context& context);
 
 /// Compiles the models on the command line; a single .yaml is a scenario, a single .cnf has been
-/// compiled before and brings neither the checked model nor the plan's graph.
+/// compiled before and brings neither the checked model nor the plan's graph. With a scenario the
+/// options that say how a plan is unrolled, --include and --horizon apply; others are refused
+/// (fits_scenario).
 base::Result<compiler::Compilation> compile_models(const ModelOptions& options, Context& context);
 
 /// The same for explanations (ScenarioNeeds::plain). Models that were compiled before are taken as

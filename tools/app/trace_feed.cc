@@ -89,7 +89,7 @@ std::string further_text(const std::vector<const compiler::Origin*>& further) {
 }  // namespace
 
 base::Known report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Timepoint steps,
-                                    Context& context) {
+                                    Context& context, const std::vector<std::string>& unexplored) {
   const auto core =
       runtime::find_unsat_core(model, steps, runtime::make_cadical_solver(&context.stop()));
   if (core.status != runtime::SolveStatus::kUnsatisfiable) return runtime::possible(core.status);
@@ -105,7 +105,12 @@ base::Known report_if_unsatisfiable(const compiler::CompiledModel& model, compil
     diagnostic.note(
         further_text({blamed.begin() + static_cast<std::ptrdiff_t>(shown), blamed.end()}));
   }
-  diagnostic.note(proof_remark(context, model, steps, core.origins));
+  for (std::size_t i = 0; i < unexplored.size() && i < kMostBlamed; ++i) {
+    diagnostic.note(unexplored[i]);
+  }
+  diagnostic.note(unexplored.empty()
+                      ? proof_remark(context, model, steps, core.origins)
+                      : "nothing is proved: the plan may have executions that were not explored");
   if (!core.is_minimal) diagnostic.note("stopped: not every one of them may be needed");
   return base::Known::kNo;
 }
@@ -124,6 +129,8 @@ EnumeratedTraces::EnumeratedTraces(const compiler::CompiledModel& model, Context
 EnumeratedTraces::EnumeratedTraces(const ScenarioModel& loaded, Context& context,
                                    const runtime::PlanEnumeratorOptions& options)
     : EnumeratedTraces(loaded.compilation.model, context, options) {
+  reservations_ = reservations_of(loaded.compilation.plan);
+  gaps_ = gap_texts(loaded.compilation.plan, context);
   if (loaded.scenario.initial == harness::Initial::kWeights) loaded_ = &loaded;
   if (loaded.scenario.mapping) unreached_.emplace(loaded);
 }
@@ -238,11 +245,23 @@ base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next_trace
 }
 
 std::string EnumeratedTraces::exploration() const {
-  return std::string(runtime::to_string(enumerator_->exploration()));
+  auto found = enumerator_->exploration();
+  const bool is_all = found == runtime::Exploration::kAllTracesExplored;
+  if (is_all && reservations_.any()) found = runtime::Exploration::kCompleteUpToBound;
+  return std::string(runtime::to_string(found));
+}
+
+std::string EnumeratedTraces::reservation() const {
+  auto out = reservations_;
+  out.cut = !enumerator_->open_ends().cuts.empty();
+  return out.words();
 }
 
 std::vector<std::string> EnumeratedTraces::bounds() const {
-  auto out = open_end_texts(*model_, enumerator_->open_ends());
+  auto out = gaps_;
+  for (auto& text : open_end_texts(*model_, enumerator_->open_ends())) {
+    out.push_back(std::move(text));
+  }
   const auto left_out = weightless_ + static_cast<std::int64_t>(states_without_weight_);
   if (left_out > 0) {
     auto text = fmt::format("{} not simulated, as `start_weights` gives {} the weight 0",
@@ -334,10 +353,16 @@ base::Result<std::pair<base::Known, std::optional<harness::CampaignTrace>>> Enum
 /// Called when the search is exhausted: it is proved that no trace meets the constraints.
 base::Status EnumeratedTraces::explain_absence() const {
   auto& sink = context_->sink();
-  if (report_if_unsatisfiable(*model_, model_->horizon, *context_) == base::Known::kNo) {
+  auto unexplored = gaps_;
+  for (auto& text : open_end_texts(*model_, {enumerator_->open_ends().cuts, {}})) {
+    unexplored.push_back(std::move(text));
+  }
+  if (report_if_unsatisfiable(*model_, model_->horizon, *context_, unexplored) ==
+      base::Known::kNo) {
     return sink.already_reported();
   }
-  const auto reasons = reasons_ ? reasons_() : std::vector<std::string>();
+  auto reasons = reasons_ ? reasons_() : std::vector<std::string>();
+  reasons.insert(reasons.end(), unexplored.begin(), unexplored.end());
   for (const auto& origin : model_->origins) {
     if (origin.kind != compiler::OriginKind::kStateConstraint) continue;
     auto warning = sink.warning(codes::kNoTraceReachesConstraint, origin.source, model_->horizon);

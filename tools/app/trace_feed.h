@@ -12,6 +12,7 @@
 #include "runtime/enumerate/closed_world.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/context.h"
+#include "tools/app/plan_reservations.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/start_weights.h"
 #include "tools/app/unreached_starts.h"
@@ -31,6 +32,7 @@ class EnumeratedTraces final : public harness::TraceFeed {
   base::Result<std::optional<harness::CampaignTrace>> next() override;
   std::string exploration() const override;
   std::vector<std::string> bounds() const override;
+  std::string reservation() const override;
   runtime::Symbols symbols() const override { return enumerator_->symbols(); }
   base::Result<std::optional<harness::TraceStarts>> starts(
       const harness::CampaignTrace& trace, std::span<const compiler::FluentId> fluents) override;
@@ -70,7 +72,9 @@ class EnumeratedTraces final : public harness::TraceFeed {
   std::map<std::int64_t, std::vector<compiler::FluentId>> told_by_;
   std::unique_ptr<runtime::SolverSession> session_;
   std::unique_ptr<runtime::PlanEnumerator> enumerator_;
-  std::int64_t given_ = 0;  // the number of the last trace
+  std::int64_t given_ = 0;         // the number of the last trace
+  PlanReservations reservations_;  // without cuts: those that traces come to are known at the end
+  std::vector<std::string> gaps_;  // one sentence each
   std::optional<UnreachedStarts> unreached_;
   std::optional<runtime::ClosedWorld> closed_world_;  // made where axioms demand events
 };
@@ -82,8 +86,10 @@ base::Result<harness::CampaignTrace> campaign_trace(const compiler::CompiledMode
                                                     runtime::Trace trace, Context& context);
 
 /// Has the model an execution of `steps` steps? If it has none, reports why: the axioms of a
-/// minimal core, each with its place.
+/// minimal core, each with its place. `unexplored`: of the plan, one sentence each
+/// (reservation_texts); where there are any nothing is proved.
 base::Known report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Timepoint steps,
-                                    Context& context);
+                                    Context& context,
+                                    const std::vector<std::string>& unexplored = {});
 
 }  // namespace parallax::tools

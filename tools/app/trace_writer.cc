@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/base/json.h"
-#include "compiler/base/shown_text.h"
 
 namespace parallax::tools {
 namespace {
@@ -137,11 +136,6 @@ std::string TraceWriter::checked_field() const {
 
 std::string TraceWriter::checked_remark() const {
   return check_ == nullptr ? "" : fmt::format(", {} checked", check_->checked());
-}
-
-std::string place_text(const compiler::TextPlace& place) {
-  if (place.file.empty()) return {};
-  return fmt::format("{}:{}:{}", base::printable(place.file), place.begin.line, place.begin.column);
 }
 
 std::vector<std::string> open_end_texts(const compiler::CompiledModel& model,

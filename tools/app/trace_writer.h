@@ -86,9 +86,6 @@ std::vector<std::string> open_end_texts(const compiler::CompiledModel& model,
 std::string dead_end_text(const compiler::CompiledModel& model, std::string_view does,
                           compiler::Timepoint length);
 
-/// "plan.lisp:3:5"; empty for a place that is not known.
-std::string place_text(const compiler::TextPlace& place);
-
 /// `"bounds":["..."],`, empty without any.
 std::string bounds_field(const std::vector<std::string>& bounds);
 

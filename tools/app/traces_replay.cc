@@ -1,6 +1,7 @@
 #include "tools/app/traces_replay.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -18,6 +19,7 @@
 #include "compiler/reference/reference_evaluator.h"
 #include "runtime/replay/trace_replay.h"
 #include "runtime/trace/trace_reader.h"
+#include "tools/app/plan_reservations.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_check.h"
 
@@ -27,6 +29,7 @@ namespace {
 /// Why a trace is not one of the model: the first reason, and some of the others.
 struct Blame {
   std::int64_t timepoint = 0;
+  bool rests_on_plan = false;  // the axioms alone may admit it
   base::DiagnosticNote first;
   std::vector<base::DiagnosticNote> others;
 };
@@ -76,7 +79,8 @@ std::optional<Blame> evaluated_blame(const runtime::ClaimedTrace& trace,
   if (found.empty()) return std::nullopt;
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.timepoint < b.timepoint; });
-  Blame blame{found.front().timepoint, note_at(found.front().source, found.front().text), {}};
+  Blame blame{
+      found.front().timepoint, false, note_at(found.front().source, found.front().text), {}};
   for (std::size_t i = 1; i < found.size() && i <= kMaxNotes; ++i) {
     blame.others.push_back(note_at(found[i].source, found[i].text));
   }
@@ -89,9 +93,11 @@ std::optional<Blame> core_blame(const compiler::Compilation& compilation,
                                 const runtime::ReplayVerdict& verdict) {
   const auto core = replay.blame(trace, verdict.timepoint);
   if (core.status != runtime::SolveStatus::kUnsatisfiable) return std::nullopt;
-  Blame blame{verdict.timepoint, {}, {}};
+  const auto& model = compilation.model;
+  Blame blame{verdict.timepoint, model.plan.empty() && !model.plan_cuts.empty(), {}, {}};
   for (const auto index : core.origins) {
-    const auto& origin = compilation.model.origins[index];
+    const auto& origin = model.origins[index];
+    blame.rests_on_plan = blame.rests_on_plan || origin.kind == compiler::OriginKind::kPlanStep;
     auto note = note_at(origin.source, std::string(to_string(origin.kind)));
     // In a compiled model the source is a line of that file.
     if (compilation.typed == nullptr) {
@@ -162,11 +168,20 @@ class TraceFileReplay {
         return judge_completion(trace, verdict);
       case ReplayVerdict::Kind::kFails: {
         const auto blame = find_blame(trace, verdict);
-        if (blame) report(trace, *blame);
+        if (blame && blame->rests_on_plan && is_open(blame->timepoint)) {
+          note_undecided(trace, blame->timepoint);
+        } else if (blame) {
+          report(trace, *blame);
+        }
         return blame.has_value();
       }
       case ReplayVerdict::Kind::kNoFirstHit:
-        report_end(trace, verdict.timepoint);
+        // Behind a cut constraints are never met.
+        if (verdict.timepoint == trace.length() && is_behind_cut(verdict.timepoint)) {
+          note_undecided(trace, verdict.timepoint);
+        } else {
+          report_end(trace, verdict.timepoint);
+        }
         return true;
     }
     return false;
@@ -183,7 +198,7 @@ class TraceFileReplay {
       }
       if (result.finished) ++result_.checked;
     }
-    note({trace.number, true, verdict.hidden, 0, {}, std::nullopt});
+    note({trace.number, true, false, verdict.hidden, 0, {}, std::nullopt});
     return true;
   }
 
@@ -211,9 +226,32 @@ class TraceFileReplay {
     }
     if (verdict.impossible) {
       const auto text = verdict.impossible_atom + " is false in every trace of the model";
-      return Blame{verdict.timepoint, {verdict.impossible->source, text}, {}};
+      const bool has_plan = !model_.plan.empty() || !model_.plan_cuts.empty();
+      return Blame{verdict.timepoint, has_plan, {verdict.impossible->source, text}, {}};
     }
     return core_blame(compilation_, replay_, trace, verdict);
+  }
+
+  bool is_behind_cut(std::int64_t timepoint) const {
+    const auto cut = first_cut(model_);
+    return cut && *cut < timepoint;
+  }
+
+  /// May the plan have executions up to `timepoint` that were not explored?
+  bool is_open(std::int64_t timepoint) const {
+    return reservations_of(compilation_.plan).any() || is_behind_cut(timepoint);
+  }
+
+  void note_undecided(const ClaimedTrace& trace, std::int64_t timepoint) {
+    ++result_.undecided;
+    ReplayedTrace out;
+    out.number = trace.number;
+    out.undecided = true;
+    out.timepoint = timepoint;
+    const auto texts = reservation_texts(compilation_, context_);
+    out.reason = fmt::format("the plan may have executions that were not explored ({})",
+                             fmt::join(texts, "; "));
+    note(std::move(out));
   }
 
   /// The solver finds no values, but nothing is open and the evaluator sees nothing wrong.
@@ -256,7 +294,7 @@ class TraceFileReplay {
   void note_failure(const ClaimedTrace& trace, std::int64_t timepoint,
                     const base::DiagnosticNote& first) {
     ++result_.failed;
-    note({trace.number, false, 0, timepoint, first.text, first.range});
+    note({trace.number, false, false, 0, timepoint, first.text, first.range});
   }
 
   void note(ReplayedTrace trace) {

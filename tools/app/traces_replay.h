@@ -20,6 +20,9 @@ struct ReplayTracesOptions {
 struct ReplayedTrace {
   std::int64_t number = 0;
   bool agrees = false;
+  /// The explored executions of the plan have no such trace, and others may: it neither agrees nor
+  /// fails. `reason` says what was not explored.
+  bool undecided = false;
   std::int64_t hidden = 0;  // if it agrees: number of atoms with values that it does not mention
   // For one that fails: the first place where it does, why, and the place of the axiom.
   std::int64_t timepoint = 0;
@@ -29,7 +32,7 @@ struct ReplayedTrace {
 
 struct ReplayedTraces {
   std::vector<ReplayedTrace> traces;  // in order of the file
-  std::int64_t seen = 0, failed = 0;
+  std::int64_t seen = 0, failed = 0, undecided = 0;
   std::int64_t checked = 0;  // agree, and the reference evaluator says so, too
   bool finished = false;     // not stopped before the last one
   bool sound = true;         // solver and evaluator never disagreed
@@ -38,8 +41,9 @@ struct ReplayedTraces {
 
 /// `traces --replay`: checks the traces of a file against the model. `report` is called for each as
 /// soon as its result is known. Reports those that fail (E7204, E7205) at the first axiom and
-/// timepoint. Every trace that agrees is checked again by the reference evaluator, where the model
-/// can be expanded. Files that cannot be read are reported (E61xx).
+/// timepoint; where a plan may have it all the same, as not every execution was explored, a trace
+/// is undecided. Every trace that agrees is checked again by the reference evaluator, where the
+/// model can be expanded. Files that cannot be read are reported (E61xx).
 base::Result<ReplayedTraces> replay_traces(const ModelOptions& model,
                                            const ReplayTracesOptions& options,
                                            const std::function<void(const ReplayedTrace&)>& report,

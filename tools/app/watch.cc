@@ -1,6 +1,7 @@
 #include "tools/app/watch.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -12,6 +13,7 @@
 #include "compiler/plan/plan_binding.h"
 #include "compiler/plan/plan_graph.h"
 #include "runtime/enumerate/demanded_events.h"
+#include "tools/app/plan_reservations.h"
 
 namespace parallax::tools {
 namespace {
@@ -160,6 +162,16 @@ base::Result<std::unique_ptr<Watch>> Watch::make(const ScenarioModel& loaded,
   note_unseen(loaded.scenario, model, belief);
   if (!options.with_plan) belief.performed.clear();
   out->belief_ = std::make_unique<runtime::Belief>(*out->windows_, belief);
+  const auto gaps = gap_texts(loaded.compilation.plan, context);
+  if (!options.with_plan || gaps.empty()) return out;
+  out->gaps_ = fmt::format("the plan may have executions that were not explored ({})",
+                           fmt::join(gaps, "; "));
+  auto without_plan = options;
+  without_plan.with_plan = false;
+  const auto before = sink;
+  auto axioms = Watch::make(loaded, without_plan, context);
+  if (axioms) out->axioms_ = *std::move(axioms);
+  sink = before;  // without it every refusal is undecided
   return out;
 }
 
@@ -172,6 +184,42 @@ void Watch::restart() {
   refusal_ = {};
   tolerated_ = {};
   last_compared_ = false;
+  unexplored_.clear();
+  if (axioms_) axioms_->restart();
+}
+
+/// The values in the order in which the watch without the plan names its variables.
+harness::ReportedValues Watch::for_axioms(const harness::ReportedValues& values) const {
+  harness::ReportedValues out;
+  const auto& known = reader_->variables();
+  for (const auto& name : axioms_->reader_->variables()) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    out.push_back(found == known.end() ? std::nullopt
+                                       : values[static_cast<std::size_t>(found - known.begin())]);
+  }
+  return out;
+}
+
+Admission Watch::step_of_axioms(const runtime::ToldStep& told) {
+  runtime::ToldStep by_name;
+  for (const auto event : told.events) {
+    const auto known = axioms_->symbols_->event(symbols_->name(event));
+    if (!known) return Admission::kAdmitted;  // nothing is known of it
+    by_name.events.push_back(*known);
+  }
+  std::sort(by_name.events.begin(), by_name.events.end());
+  return axioms_->step(by_name);
+}
+
+/// A refusal counts where the axioms refuse, too, or every execution of the plan was explored.
+Admission Watch::judged(Admission by_plan, Admission by_axioms) {
+  if (by_plan != Admission::kRefused || gaps_.empty()) return by_plan;
+  if (axioms_ && by_axioms == Admission::kRefused) {
+    refusal_ = axioms_->refusal();
+    return by_plan;
+  }
+  unexplored_ = gaps_;
+  return Admission::kUndecided;
 }
 
 runtime::Observation Watch::observation_of(const harness::SeenState& seen) const {
@@ -191,7 +239,9 @@ Admission Watch::observe(const harness::ReportedValues& values, bool at_rest) {
                    std::any_of(seen_.fluents.begin(), seen_.fluents.end(),
                                [](std::int8_t known) { return known != 0; });
   if (last_compared_) ++compared_;
-  if (!belief_->undecided_because().empty()) return Admission::kUndecided;
+  if (!undecided_because().empty()) return Admission::kUndecided;
+  const auto by_axioms =
+      axioms_ ? axioms_->observe(for_axioms(values), at_rest) : Admission::kAdmitted;
   bool exact_agrees = true;
   if (seen_.near_border) {
     reader_->read(values, at_rest, exact_);
@@ -210,7 +260,7 @@ Admission Watch::observe(const harness::ReportedValues& values, bool at_rest) {
     ++tolerated_.near_border;
     if (!exact_agrees) ++tolerated_.only_within;
   }
-  return admission;
+  return judged(admission, by_axioms);
 }
 
 RefusedFluent Watch::refused(std::size_t number, const harness::ReportedValues& values) const {
@@ -259,6 +309,8 @@ void Watch::explain_seen(const harness::ReportedValues& values) {
 }
 
 Admission Watch::step(const runtime::ToldStep& told) {
+  if (!unexplored_.empty()) return Admission::kUndecided;
+  const auto by_axioms = axioms_ ? step_of_axioms(told) : Admission::kAdmitted;
   const auto admission = belief_->step(told);
   if (admission != Admission::kRefused) return admission;
   refusal_ = {};
@@ -279,7 +331,7 @@ Admission Watch::step(const runtime::ToldStep& told) {
     }
   }
   refusal_.plan_is_over = belief_->plan_may_be_over();
-  return admission;
+  return judged(admission, by_axioms);
 }
 
 }  // namespace parallax::tools

@@ -72,6 +72,10 @@ class Watch {
   const ToleratedReadings& tolerated() const { return tolerated_; }
   runtime::Admission step(const runtime::ToldStep& told);
   const runtime::Belief& belief() const { return *belief_; }
+  /// Why nothing is said any more; empty: something is.
+  const std::string& undecided_because() const {
+    return unexplored_.empty() ? belief_->undecided_because() : unexplored_;
+  }
   /// The last refusal.
   const Refusal& refusal() const { return refusal_; }
   /// Number of observations that mentioned a fluent and were compared with the model.
@@ -79,6 +83,9 @@ class Watch {
 
  private:
   Watch() = default;
+  harness::ReportedValues for_axioms(const harness::ReportedValues& values) const;
+  runtime::Admission step_of_axioms(const runtime::ToldStep& told);
+  runtime::Admission judged(runtime::Admission by_plan, runtime::Admission by_axioms);
   void explain(const harness::ReportedValues& values, bool at_rest);
   void explain_seen(const harness::ReportedValues& values);
   runtime::Observation observation_of(const harness::SeenState& seen) const;
@@ -92,6 +99,11 @@ class Watch {
   std::unique_ptr<harness::ObservationReader> reader_;
   std::unique_ptr<runtime::StepWindows> windows_;
   std::unique_ptr<runtime::Belief> belief_;
+  /// The same without the plan, where the plan has executions that are not explored: what this one
+  /// admits is not refused. Null: there are none.
+  std::unique_ptr<Watch> axioms_;
+  std::string gaps_;        // of the plan, if it has some
+  std::string unexplored_;  // they may be why a report was not among the explored executions
   bool only_at_rest_ = false, compares_at_rest_ = false;
   harness::ReadingTolerance tolerance_;
   harness::SeenState seen_, exact_;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -7,8 +8,8 @@
 #include "compiler/base/json.h"
 #include "compiler/base/word_table.h"
 #include "compiler/base/words.h"
-#include "tools/app/certify.h"
 #include "tools/app/consequences.h"
+#include "tools/app/plan_reservations.h"
 #include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
 #include "tools/cli/explain_text.h"
@@ -66,22 +67,31 @@ std::string facts_text(const compiler::CompiledModel& model, const ModelConseque
   return out;
 }
 
+/// ` (not of every order)` where the plan has executions that were not explored.
+std::string words_of(const PlanReservations& reservations) {
+  return reservations.any() ? fmt::format(" ({})", reservations.words()) : "";
+}
+
 std::string text_of(const ConsequencesOptions& options, const compiler::CompiledModel& model,
-                    const ModelConsequences& found) {
+                    const ModelConsequences& found, const PlanReservations& reservations) {
   std::string out;
   const bool why = options.query.why;
+  const auto limits = words_of(reservations);
   if (!options.sometimes) {
-    out += "in all traces\n" + facts_text(model, found, Extent::kAll, why);
+    out += fmt::format("in all traces{}\n", limits) + facts_text(model, found, Extent::kAll, why);
   }
   if (!options.always) {
-    out += "in some traces, not in all\n" + facts_text(model, found, Extent::kSome, false);
+    out += fmt::format("in some traces, not in all{}\n", limits) +
+           facts_text(model, found, Extent::kSome, false);
   }
   const auto undecided = facts_text(model, found, Extent::kUndecided, false);
-  if (!found.complete && undecided != "  nothing\n") out += "not decided\n" + undecided;
+  if ((!found.complete || found.cut) && undecided != "  nothing\n")
+    out += "not decided\n" + undecided;
   return out;
 }
 
-ordered_json json_of(const compiler::CompiledModel& model, const ModelConsequences& found) {
+ordered_json json_of(const compiler::CompiledModel& model, const ModelConsequences& found,
+                     const PlanReservations& reservations) {
   auto facts = ordered_json::array();
   ordered_json counts = {
       {"always", 0}, {"sometimes", 0}, {"never", 0}, {"absent", 0}, {"undecided", 0}};
@@ -102,48 +112,66 @@ ordered_json json_of(const compiler::CompiledModel& model, const ModelConsequenc
     }
     facts.push_back(std::move(entry));
   }
-  return {{"status", "ok"},
-          {"has_traces", found.any ? ordered_json(*found.any) : ordered_json()},
-          {"complete", found.complete},
-          {"horizon", model.horizon},
-          {"facts", std::move(facts)},
-          {"counts", std::move(counts)}};
+  ordered_json out = {{"status", "ok"},
+                      {"has_traces", found.any ? ordered_json(*found.any) : ordered_json()},
+                      {"complete", found.complete && !reservations.any()}};
+  for (const auto& [name, value] : reservations.fields()) out[name] = value;
+  out["horizon"] = model.horizon;
+  out["facts"] = std::move(facts);
+  out["counts"] = std::move(counts);
+  return out;
 }
 
-int tell_consequences(const ConsequencesOptions& options, const compiler::CompiledModel& model,
+int tell_consequences(const ConsequencesOptions& options, const compiler::Compilation& compilation,
                       Invocation& invocation) {
+  const auto& model = compilation.model;
   const auto found = find_model_consequences(model, options.query, invocation);
   if (!found) return 0;
+  auto reservations = reservations_of(compilation.plan);
+  reservations.cut = found->cut.has_value();
   if (found->complete) invocation.answered();
   if (invocation.options().json) {
-    invocation.document(base::json_text(json_of(model, *found)) + '\n');
+    invocation.document(base::json_text(json_of(model, *found, reservations)) + '\n');
   } else if (found->any == false) {
-    invocation.result("there is no trace: everything would follow\n");
+    invocation.result(
+        fmt::format("there is no trace{}: everything would follow\n", words_of(reservations)));
     invocation.remark("`parallax explain` says which axioms exclude each other");
   } else if (found->any) {
-    invocation.result(text_of(options, model, *found));
+    invocation.result(text_of(options, model, *found, reservations));
   }
   if (!found->complete) {
     invocation.remark("stopped before everything was decided");
     return 4;
   }
+  const bool is_open =
+      std::any_of(found->facts.begin(), found->facts.end(),
+                  [](const ConsequenceFact& fact) { return fact.extent == Extent::kUndecided; });
+  if (is_open) {
+    invocation.remark(fmt::format(
+        "from timepoint {} on the plan may be where its unrolling was cut: what follows is not "
+        "decided",
+        *found->cut));
+    return 4;
+  }
   return found->any == true ? 0 : 1;
 }
 
-ordered_json json_of(const Abduction& found) {
+ordered_json json_of(const Abduction& found, const PlanReservations& reservations) {
   auto explanations = ordered_json::array();
   for (const auto& set : found.explanations) {
     auto occurrences = ordered_json::array();
     for (const auto& one : set) occurrences.push_back({{"event", one.name}, {"time", one.time}});
     explanations.push_back(std::move(occurrences));
   }
-  return {{"status", "ok"},
-          {"explanations", std::move(explanations)},
-          {"complete", found.complete},
-          {"possible_only", found.possible_only}};
+  ordered_json out = {{"status", "ok"},
+                      {"explanations", std::move(explanations)},
+                      {"complete", found.complete && !reservations.any()}};
+  for (const auto& [name, value] : reservations.fields()) out[name] = value;
+  out["possible_only"] = found.possible_only;
+  return out;
 }
 
-std::string text_of(const Abduction& found) {
+std::string text_of(const Abduction& found, const PlanReservations& reservations) {
   std::string out;
   std::size_t number = 0;
   for (const auto& set : found.explanations) {
@@ -155,7 +183,9 @@ std::string text_of(const Abduction& found) {
     out += '\n';
   }
   out += fmt::format("{}{}\n", base::counted(number, "explanation"),
-                     found.complete ? ", complete" : "");
+                     reservations.any() ? ", " + reservations.words()
+                     : found.complete   ? ", complete"
+                                        : "");
   if (found.possible_only > 0) {
     out += fmt::format("{} of events may be followed by it, but need not: something else is open\n",
                        base::counted(found.possible_only, "further set"));
@@ -163,14 +193,15 @@ std::string text_of(const Abduction& found) {
   return out;
 }
 
-int tell_abduction(const ConsequencesOptions& options, const compiler::CompiledModel& model,
+int tell_abduction(const ConsequencesOptions& options, const compiler::Compilation& compilation,
                    Invocation& invocation) {
-  const auto found = abduce(model, options.abduction, invocation);
+  const auto found = abduce(compilation.model, options.abduction, invocation);
   if (!found) return 0;
+  const auto reservations = reservations_of(compilation);
   if (invocation.options().json) {
-    invocation.document(base::json_text(json_of(*found)) + '\n');
+    invocation.document(base::json_text(json_of(*found, reservations)) + '\n');
   } else {
-    invocation.result(text_of(*found));
+    invocation.result(text_of(*found, reservations));
   }
   if (found->complete) invocation.answered();
   if (!found->complete && invocation.stopped()) {
@@ -205,8 +236,8 @@ int run_consequences(ConsequencesOptions options, Invocation& invocation) {
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
   tell_reservations(*compilation, invocation);
-  return abduces ? tell_abduction(options, compilation->model, invocation)
-                 : tell_consequences(options, compilation->model, invocation);
+  return abduces ? tell_abduction(options, *compilation, invocation)
+                 : tell_consequences(options, *compilation, invocation);
 }
 
 }  // namespace

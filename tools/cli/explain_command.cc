@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "tools/app/discrepancy.h"
 #include "tools/app/evidence.h"
 #include "tools/app/explain.h"
+#include "tools/app/plan_reservations.h"
 #include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
 #include "tools/cli/explain_text.h"
@@ -31,22 +33,23 @@ struct ExplainOptions {
 
 /// The model with every axiom's clauses unsimplified by other axioms; if it is too large for that,
 /// as it is solved.
-std::optional<compiler::CompiledModel> compile(const ExplainOptions& options,
-                                               Invocation& invocation) {
-  if (names_artifact(options.model)) {  // what it says was settled when it was compiled
-    auto compiled = compile_models(options.model, invocation);
-    return compiled ? std::optional(std::move(compiled->model)) : std::nullopt;
-  }
+std::optional<compiler::Compilation> compile(const ExplainOptions& options,
+                                             Invocation& invocation) {
+  const auto kept = [](base::Result<compiler::Compilation> compiled) {
+    return compiled ? std::optional(*std::move(compiled)) : std::nullopt;
+  };
+  // A compiled model was settled when it was compiled.
+  if (names_artifact(options.model)) return kept(compile_models(options.model, invocation));
   Invocation attempt(invocation.options());
   auto compiled = compile_plain_models(options.model, attempt);
   for (const auto& input : attempt.files().inputs()) invocation.files().note_input(input);
-  if (compiled) return std::move(compiled->model);
+  if (compiled) return kept(std::move(compiled));
   auto usual = compile_models(options.model, invocation);
   if (!usual) return std::nullopt;
   invocation.remark(
       "the model is too large to be grounded in full: what some axioms settle for others is not "
       "shown");
-  return std::move(usual->model);
+  return kept(std::move(usual));
 }
 
 void report_cut_short(const runtime::MinimalSets& found, Invocation& invocation) {
@@ -55,9 +58,21 @@ void report_cut_short(const runtime::MinimalSets& found, Invocation& invocation)
                                              : "the sets may not be what was asked for");
 }
 
+/// Notes that nothing is proved by a set that blames a plan which was not explored in full.
+void note_reservations(const compiler::Compilation& compilation, Contradiction& set) {
+  const auto reservations = reservations_of(compilation);
+  const auto& model = compilation.model;
+  const bool blames_plan =
+      std::any_of(set.axioms.begin(), set.axioms.end(), [&](const BlamedAxiom& axiom) {
+        return model.origins[axiom.origin].kind == compiler::OriginKind::kPlanStep;
+      });
+  if (reservations.any() && blames_plan) set.no_proof = reservations.verdict();
+}
+
 /// Minimal sets of contradictory axioms, each printed as soon as it was examined.
-int explain_contradiction(const compiler::CompiledModel& model, const SetOptions& options,
+int explain_contradiction(const compiler::Compilation& compilation, const SetOptions& options,
                           Invocation& invocation) {
+  const auto& model = compilation.model;
   const bool as_json = invocation.options().json;
   ContradictionSearch search(model, std::nullopt, invocation);
   const auto found = search.sets(options);
@@ -71,6 +86,7 @@ int explain_contradiction(const compiler::CompiledModel& model, const SetOptions
   std::vector<Contradiction> sets;
   for (const auto& set : found->sets) {
     sets.push_back(search.look_at(set));
+    note_reservations(compilation, sets.back());
     if (!as_json) invocation.result(contradiction_text(model, sets.size(), sets.back()));
   }
   if (as_json) {
@@ -201,6 +217,7 @@ int explain_discrepancy(const RecordedDiscrepancy& found, const ExplainOptions& 
   std::vector<std::string> words;
   for (const auto& set : sets_found->sets) {
     sets.push_back(search.look_at(set));
+    note_reservations(found.loaded.compilation, sets.back());
     words.push_back(blame_words(model, found.path, *found.parting, sets.back().clauses));
     if (as_json) continue;
     const bool is_first = sets.size() == 1;
@@ -261,10 +278,11 @@ int explain(const ExplainOptions& options, Invocation& invocation) {
                                   "--sample and --scenario are for folders of runs");
     return 0;
   }
-  const auto model = compile(options, invocation);
-  if (!model) return 0;
+  const auto compilation = compile(options, invocation);
+  if (!compilation) return 0;
+  const auto* model = &compilation->model;
   if (!options.asks_why) {
-    return explain_contradiction(*model, options.sets, invocation);
+    return explain_contradiction(*compilation, options.sets, invocation);
   }
   auto why = options.why;
   why.all = options.sets.all;

@@ -60,6 +60,11 @@ std::string observed_text(const ObservedRun* run, bool verbose = true) {
   return out;
 }
 
+std::string proof_words(const Contradiction& set) {
+  return set.no_proof.empty() ? fmt::format("proof {}", kProofVerdictWords.of(set.proof))
+                              : set.no_proof;
+}
+
 /// An instance on a line of its own.
 std::string shortened(const std::string& instance) {
   constexpr std::size_t kMost = 160;
@@ -82,10 +87,9 @@ std::string contradiction_head(const runtime::MinimalSets& found, const SetOptio
 std::string contradiction_text(const compiler::CompiledModel& model, std::size_t number,
                                const Contradiction& set, Instances shown,
                                const std::string& words) {
-  auto out =
-      fmt::format("set {}: {} (proof {}{})\n", number, base::counted(set.axioms.size(), "axiom"),
-                  kProofVerdictWords.of(set.proof),
-                  set.instances_minimal ? "" : "; instances not minimal: stopped");
+  auto out = fmt::format("set {}: {} ({}{})\n", number, base::counted(set.axioms.size(), "axiom"),
+                         proof_words(set),
+                         set.instances_minimal ? "" : "; instances not minimal: stopped");
   if (!words.empty()) out += harness::wrapped("  ", words, 2);
   for (const auto& axiom : set.axioms) {
     const auto& origin = model.origins[axiom.origin];
@@ -137,9 +141,10 @@ ordered_json contradictions_document(const compiler::CompiledModel& model,
                         {"instances", axiom.instances}});
     }
     list.push_back({{"size", set.axioms.size()},
-                    {"proof", kProofVerdictWords.of(set.proof)},
+                    {"proof", set.no_proof.empty() ? kProofVerdictWords.of(set.proof) : "none"},
                     {"instances_minimal", set.instances_minimal},
                     {"axioms", std::move(axioms)}});
+    if (!set.no_proof.empty()) list.back()["no_proof"] = set.no_proof;
   }
   document["sets"] = std::move(list);
   return document;

@@ -14,6 +14,10 @@ std::string replayed_text(const ReplayedTrace& trace, const base::SourceFiles& f
     return fmt::format("trace {}: agrees, with values for {} atoms that it does not mention\n",
                        trace.number, trace.hidden);
   }
+  if (trace.undecided) {
+    return fmt::format("trace {}: undecided at timepoint {}: {}\n", trace.number, trace.timepoint,
+                       trace.reason);
+  }
   const auto place = trace.source ? files.place(*trace.source) : std::string();
   return fmt::format("trace {}: fails at timepoint {}{}\n", trace.number, trace.timepoint,
                      place.empty() ? "" : ", " + place);
@@ -23,10 +27,11 @@ namespace {
 
 nlohmann::ordered_json replayed_json(const ReplayedTrace& trace, const base::SourceFiles& files) {
   if (trace.agrees) return {{"trace", trace.number}, {"agrees", true}, {"hidden", trace.hidden}};
-  nlohmann::ordered_json out = {{"trace", trace.number},
-                                {"agrees", false},
-                                {"timepoint", trace.timepoint},
-                                {"text", trace.reason}};
+  nlohmann::ordered_json out = {
+      {"trace", trace.number},
+      {"agrees", trace.undecided ? nlohmann::ordered_json() : nlohmann::ordered_json(false)},
+      {"timepoint", trace.timepoint},
+      {"text", trace.reason}};
   if (trace.source) {
     const auto& file = files[trace.source->file];
     const auto position = file.position(trace.source->begin);
@@ -42,13 +47,15 @@ nlohmann::ordered_json replayed_json(const ReplayedTrace& trace, const base::Sou
 std::string replay_document(const ReplayedTraces& replay, const base::SourceFiles& files) {
   auto list = nlohmann::ordered_json::array();
   for (const auto& trace : replay.traces) list.push_back(replayed_json(trace, files));
-  const nlohmann::ordered_json document = {{"status", replay.sound ? "ok" : "error"},
-                                           {"traces", replay.seen},
-                                           {"agree", replay.seen - replay.failed},
-                                           {"fail", replay.failed},
-                                           {"checked", replay.checked},
-                                           {"complete", replay.finished},
-                                           {"list", std::move(list)}};
+  const nlohmann::ordered_json document = {
+      {"status", replay.sound ? "ok" : "error"},
+      {"traces", replay.seen},
+      {"agree", replay.seen - replay.failed - replay.undecided},
+      {"fail", replay.failed},
+      {"undecided", replay.undecided},
+      {"checked", replay.checked},
+      {"complete", replay.finished},
+      {"list", std::move(list)}};
   return base::json_text(document) + '\n';
 }
 

@@ -70,7 +70,8 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
     fields += fmt::format("\"up_to_symmetry\":true,\"in_all\":{},", ending.in_all);
     in_all = fmt::format(" up to symmetry, {} in all{}", ending.in_all, stopped ? " so far" : "");
   }
-  const bool complete = ending.complete && !certifier.refuted();
+  // Executions of the plan that were not explored have traces that are not in the list.
+  const bool complete = ending.complete && !certifier.refuted() && !certifier.reservations().any();
   if (complete && writer.count() == 0 && options.search.from == 1 && options.ended.empty()) {
     point_to_explanation(options, invocation);
   }
@@ -130,8 +131,8 @@ std::optional<int> count_only(const TracesOptions& options, const compiler::Comp
     invocation.document(
         fmt::format("{{\"status\":\"ok\",\"traces\":{},\"complete\":{},\"exploration\":\"{}\","
                     "\"strategy\":\"{}\",{}\"timing\":{{\"wall_s\":{:.3f}}}}}\n",
-                    counted->number, ending.complete, ending.exploration, counted->strategy, fields,
-                    wall.count()));
+                    counted->number, ending.complete && !certifier.reservations().any(),
+                    ending.exploration, counted->strategy, fields, wall.count()));
   } else {
     invocation.result(counted->number +
                       (all ? fmt::format(" up to symmetry, {} in all\n", ending.in_all) : "\n"));
@@ -222,14 +223,16 @@ int replay(const TracesOptions& options, Invocation& invocation) {
   if (as_json) {
     invocation.document(replay_document(*result, files));
   } else {
-    invocation.result(fmt::format("{} replayed, {}: {} agree, {} fail, {} checked\n",
-                                  base::counted(result->seen, "trace"),
-                                  result->finished ? "complete" : "stopped",
-                                  result->seen - result->failed, result->failed, result->checked));
+    const auto open =
+        result->undecided > 0 ? fmt::format("{} undecided, ", result->undecided) : std::string();
+    invocation.result(fmt::format(
+        "{} replayed, {}: {} agree, {} fail, {}{} checked\n", base::counted(result->seen, "trace"),
+        result->finished ? "complete" : "stopped",
+        result->seen - result->failed - result->undecided, result->failed, open, result->checked));
   }
   if (!result->sound) return 5;
   if (result->failed > 0) return 1;
-  return result->finished ? 0 : 4;
+  return result->finished && result->undecided == 0 ? 0 : 4;
 }
 
 using StartTime = std::chrono::steady_clock::time_point;
@@ -275,6 +278,8 @@ int list_compiled(const TracesOptions& options, const compiler::Compilation& com
   certifier.emplace(options.certify, options.model.models, model, invocation);
   if (!certifier->ready()) return 0;
   certifier->note_gaps(compilation.plan);
+  // Behind a cut there may be better ones, whether or not the best ones come to it.
+  if (best != nullptr && all != nullptr && may_be_cut(*all)) certifier->note_cut();
   // Where the list claims less, the optimum has a proof of its own.
   const auto prove_optimum = [&] {
     if (best == nullptr || !best->optimum().witness || !certifier->is_asked()) return;

@@ -187,7 +187,8 @@ std::string answer_text(const compiler::CompiledModel& model, const CheckedPrope
   }
   auto out = fmt::format("holds up to horizon {}", model.horizon);
   if (!answer.proof.empty()) out += fmt::format(" ({})", answer.proof);
-  if (answer.exploration == runtime::Exploration::kAllTracesExplored && !model.plan.empty()) {
+  if (answer.exploration == runtime::Exploration::kAllTracesExplored && !model.plan.empty() &&
+      !answer.reservations.any()) {
     out += ", and every path of the plan has ended by then";
   }
   if (answer.is_open_ended) out += ", of executions that end by then: others go on";
@@ -305,8 +306,12 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   certifier.note_gaps(compilation->plan);
   auto answer = ask(model, certifier, !options.certify.file.empty(), options.jobs);
   // Without executions nothing can go wrong in a model. One that goes on is known to have some.
-  if (!answer.violation && answer.exploration == runtime::Exploration::kAllTracesExplored &&
-      report_if_unsatisfiable(model, model.horizon, invocation) == base::Known::kNo) {
+  // Where the plan was cut, what goes on is not known to.
+  const bool may_have_none =
+      answer.exploration == runtime::Exploration::kAllTracesExplored || answer.cut;
+  if (!answer.violation && may_have_none &&
+      report_if_unsatisfiable(model, model.horizon, invocation,
+                              reservation_texts(*compilation, invocation)) == base::Known::kNo) {
     return 0;
   }
   const bool holds = !answer.violation && answer.exploration != runtime::Exploration::kStopped;

@@ -2,6 +2,7 @@
 
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/session/solver_session.h"
+#include "tools/app/plan_reservations.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_feed.h"
 #include "tools/app/trace_writer.h"
@@ -38,7 +39,12 @@ RuleResult trace_rule(const ModelDifference& found, bool lost) {
   const auto& kept = lost ? found.old_side : found.new_side;
   const auto horizon = lost ? found.old_horizon : found.new_horizon;
   const auto& unmatched = lost ? traces.vocabulary.only_first : traces.vocabulary.only_second;
-  if (side.answer == DifferenceAnswer::kFound) {
+  const auto& other = lost ? found.new_side : found.old_side;
+  const auto& partial = kept.reservation.empty() ? other : kept;
+  if (!partial.reservation.empty()) {
+    // Either side may have traces that were not explored.
+    out.words = fmt::format("the traces of {} are {}", partial.name, partial.reservation);
+  } else if (side.answer == DifferenceAnswer::kFound) {
     out.outcome = RuleOutcome::kBroken;
     out.words =
         fmt::format("{} {} up to timepoint {}", count_text(side.count), name, traces.horizon);
@@ -110,8 +116,12 @@ base::Result<RevisionAnswer> ask_property(const std::string& path, RevisionKind 
   const auto empty =
       report_if_unsatisfiable(compilation->model, compilation->model.horizon, context);
   context.sink() = sink;
+  auto reservations = reservations_of(compilation->plan);
+  reservations.cut = !violations.open_ends().cuts.empty();
   if (empty == base::Known::kNo) {
     out.why = fmt::format("{} has no trace at all", path);
+  } else if (reservations.any()) {
+    out.why = fmt::format("{} has no violation, but that is {}", path, reservations.words());
   } else {
     out.holds = base::Known::kYes;
   }

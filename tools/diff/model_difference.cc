@@ -293,6 +293,11 @@ class ModelComparison {
       out_.remarks.emplace_back(
           "state constraints do not end a trace here: executions are compared up to the horizon");
     }
+    for (const auto* side : {&out_.old_side, &out_.new_side}) {
+      if (side->reservation.empty()) continue;
+      out_.remarks.push_back(fmt::format("the traces of {} are {}: its plan may have others",
+                                         side->name, side->reservation));
+    }
     runtime::DifferenceOptions options;
     options.list_limit = options_.list_limit;
     // Whoever asks for more may wait for more.

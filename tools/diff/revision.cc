@@ -12,6 +12,7 @@
 #include "compiler/compare/model_facts.h"
 #include "compiler/compare/plan_calls.h"
 #include "harness/simulator/command_files.h"
+#include "tools/app/plan_reservations.h"
 #include "tools/app/scenario_model.h"
 
 namespace parallax::tools {
@@ -42,6 +43,7 @@ base::Result<ModelRevision> load_texts(const std::string& path, const LoadRevisi
   if (options.compile) {
     auto compilation = compile_models(model, context);
     if (!compilation) return context.sink().already_reported();
+    out.reservation = reservations_of(*compilation).words();
     out.compiled = std::move(compilation->model);
     add_text_facts(model.models, load, out.facts);
     return out;
@@ -64,6 +66,7 @@ base::Result<ModelRevision> load_compiled(const std::string& path, const LoadRev
         codes::kHorizonNotExtensible, path, horizon,
         fmt::format("it was compiled for the horizon {}", model->horizon));
   }
+  if (goes_behind_cut(*model)) out.reservation = PlanReservations{.cut = true}.words();
   out.compiled = *std::move(model);
   use_artifact_facts(out);
   return out;
@@ -198,6 +201,7 @@ base::Result<ModelRevision> load_scenario_revision(const std::string& path,
   }
   add_world_facts(scenario, load, out.facts);
   add_plan_calls(scenario, loaded->compilation.model, *out.settings);
+  out.reservation = reservations_of(loaded->compilation).words();
   out.compiled = std::move(loaded->compilation.model);
   return out;
 }

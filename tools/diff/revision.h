@@ -45,6 +45,8 @@ struct ModelRevision {
   bool is_text = false;
   /// The command of an external simulator, with its files as the side has them.
   std::vector<std::string> command = {};
+  /// The part of a plan that the compiled traces do not cover; empty: nothing is left out.
+  std::string reservation = {};
 };
 
 /// Where one side of a comparison has the files that the command of a simulator names.

@@ -23,6 +23,7 @@ class BoundedTraces final : public harness::TraceFeed {
   bool ended() const { return ended_; }
   std::string exploration() const override { return ended_ ? "stopped" : traces_.exploration(); }
   std::vector<std::string> bounds() const override { return traces_.bounds(); }
+  std::string reservation() const override { return traces_.reservation(); }
   runtime::Symbols symbols() const override { return traces_.symbols(); }
   base::Known admits(const harness::CampaignTrace& trace,
                      const std::vector<std::map<compiler::FluentId, bool>>& observed) override {

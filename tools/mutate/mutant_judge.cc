@@ -7,6 +7,7 @@
 
 #include "compiler/base/path_gate.h"
 #include "runtime/compare/trace_difference.h"
+#include "tools/app/plan_reservations.h"
 #include "tools/diff/model_difference.h"
 #include "tools/mutate/case_model.h"
 
@@ -117,6 +118,14 @@ MutantJudge::Told MutantJudge::compare(std::size_t index) {
   const bool told_otherwise = out.answer == Told::Answer::kSame && simulates(suite_.cases[index]) &&
                               original->plan && mutated->plan &&
                               !same_arguments(*original->plan, *mutated->plan);
+  if (out.answer == Told::Answer::kSame) {
+    auto left_out = reservations_of(original->plan);
+    left_out.cut = goes_behind_cut(original->compiled) || goes_behind_cut(mutated->compiled);
+    if (left_out.any()) {
+      out.answer = Told::Answer::kUnknown;
+      out.why = fmt::format("{}: the traces are the same, but they are {}", name, left_out.words());
+    }
+  }
   if (told_otherwise) {
     out.answer = Told::Answer::kUnknown;
     out.why = name + ": the traces are the same, but the plan tells controllers something else";
@@ -152,7 +161,7 @@ MutantJudgement MutantJudge::look_at(const Mutant& mutant) {
     if (simulates(suite_.cases[i])) continue;
     const auto result = run(i);
     if (stop_.load()) return {};
-    if (result.outcome == Outcome::kPassed) continue;
+    if (result.outcome == Outcome::kPassed || result.outcome == Outcome::kInconclusive) continue;
     if (result.outcome == Outcome::kFailed) return noticed(i, result);
     // No answer: perhaps the mutant is not a valid model.
     auto found = compare(i);

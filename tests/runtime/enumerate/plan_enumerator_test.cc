@@ -119,6 +119,21 @@ TEST_CASE("what was not followed is named: the step at the horizon, the loop tha
   PlannedModel shorter(kRooms + kShut, endless, kBinding, "HoldsAt(At(b2),time)", 9);
   CHECK(shorter.keys().open_ends.cuts.empty());
   CHECK(shorter.keys().open_ends.step == 9);
+
+  // Sixteen rounds lead to the state at 16. Later timepoints are of no execution.
+  PlannedModel at(kRooms + kShut, endless, kBinding, "time=16", 20);
+  CHECK(at.keys().keys.size() == 1);
+  CHECK(at.keys().exploration == Exploration::kAllTracesExplored);
+  PlannedModel behind(kRooms + kShut, endless, kBinding, "time=17", 20);
+  CHECK(behind.keys().keys.empty());
+  CHECK(behind.keys().exploration == Exploration::kCompleteUpToBound);
+  CHECK(behind.keys().open_ends.cuts == std::vector<std::size_t>{0});
+  // Also where the axioms do not let the plan rest there.
+  const std::string always = "[time] time<20 -> Happens(Go(a1),time).\n";
+  PlannedModel restless(kRooms + kShut + always, endless, kBinding, "time=17", 20);
+  REQUIRE(restless.codes() == "");
+  CHECK(restless.keys().keys.empty());
+  CHECK(restless.keys().exploration == Exploration::kCompleteUpToBound);
 }
 
 TEST_CASE("the longest path of a plan is the horizon where nothing says one") {
