@@ -44,6 +44,10 @@ inline BuiltinFailure not_a_number(const BuiltinCall& c, std::size_t index) {
 /// is.
 inline BuiltinResult first_argument(const BuiltinCall& c) { return c.args[0]; }
 
+/// `eql` and `equal` of Lisp. A match of what may be two things there is noted.
+bool is_same(const BuiltinCall& c, ValueId a, ValueId b);
+bool is_equal(const BuiltinCall& c, ValueId a, ValueId b);
+
 /// Functions that make a fluent of fluents: CRAM's package gives them the names of Lisp's.
 bool takes_fluents(std::string_view builtin);
 bool is_fluent(const Value& value);

@@ -171,8 +171,7 @@ std::variant<std::pair<Pairs, std::size_t>, BuiltinFailure> find_key(const Built
   auto pairs = *c.values.elements(content_of(c, c.args[table]));
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const auto known = c.values[pairs[i]].head;
-    const bool same =
-        structure ? c.values.equal(known, c.args[key]) : c.values.same(known, c.args[key]);
+    const bool same = structure ? is_equal(c, known, c.args[key]) : is_same(c, known, c.args[key]);
     if (same) return std::pair(std::move(pairs), i);
     if (is_model(known) || is_model(c.args[key])) {
       return BuiltinFailure{BuiltinError::kModelList, "a search among values of the model"};

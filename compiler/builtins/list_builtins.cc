@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -10,9 +11,18 @@
 namespace parallax::compiler {
 namespace {
 
+constexpr std::string_view kAlike = "equal things taken for one thing";
+
 template <bool kStructure>
 BuiltinResult same(const BuiltinCall& c) {
-  if (c.values.same(c.args[0], c.args[1])) return c.values.truth();
+  if (kStructure ? is_equal(c, c.args[0], c.args[1]) : is_same(c, c.args[0], c.args[1])) {
+    // `eq` may tell numbers apart that are not small.
+    const auto* number = c.number(0);
+    const bool large = number != nullptr && !number->is_integer() && !number->is_float();
+    if (c.name == "eq" && (large || (number != nullptr && number->kind() == Number::Kind::kDouble)))
+      c.values.doubt(kAlike);
+    return c.values.truth();
+  }
   const auto left = c.values.kind(c.args[0]);
   const auto right = c.values.kind(c.args[1]);
   const auto comparable = [](ValueKind kind) {
@@ -22,7 +32,7 @@ BuiltinResult same(const BuiltinCall& c) {
   if (asks_model && comparable(left) && comparable(right)) {
     return ModelEquality{c.args[0], c.args[1]};
   }
-  return c.values.boolean(kStructure && c.values.equal(c.args[0], c.args[1]));
+  return c.values.nil();
 }
 
 BuiltinResult is_null(const BuiltinCall& c) { return c.values.boolean(c.values.is_nil(c.args[0])); }
@@ -110,7 +120,7 @@ BuiltinResult member(const BuiltinCall& c) {
   if (auto* failure = std::get_if<BuiltinFailure>(&found)) return *failure;
   const auto& items = std::get<0>(found);
   const auto at = std::find_if(items.begin(), items.end(),
-                               [&](ValueId item) { return c.values.same(item, c.args[0]); });
+                               [&](ValueId item) { return is_same(c, item, c.args[0]); });
   return c.values.list({at, items.end()});
 }
 
@@ -119,7 +129,7 @@ BuiltinResult find(const BuiltinCall& c) {
   if (auto* failure = std::get_if<BuiltinFailure>(&found)) return *failure;
   const auto& items = std::get<0>(found);
   const bool has = std::any_of(items.begin(), items.end(),
-                               [&](ValueId item) { return c.values.same(item, c.args[0]); });
+                               [&](ValueId item) { return is_same(c, item, c.args[0]); });
   return has ? c.args[0] : c.values.nil();
 }
 
@@ -127,7 +137,7 @@ BuiltinResult remove(const BuiltinCall& c) {
   auto found = searched(c);
   if (auto* failure = std::get_if<BuiltinFailure>(&found)) return *failure;
   auto items = std::get<0>(found);
-  std::erase_if(items, [&](ValueId item) { return c.values.same(item, c.args[0]); });
+  std::erase_if(items, [&](ValueId item) { return is_same(c, item, c.args[0]); });
   return c.values.list(items);
 }
 
@@ -136,7 +146,7 @@ BuiltinResult assoc(const BuiltinCall& c) {
   if (!items) return c.wrong(1, "a list");
   for (const auto item : *items) {
     const auto& pair = c.values[item];
-    if (pair.kind == ValueKind::kCons && c.values.same(pair.head, c.args[0])) return item;
+    if (pair.kind == ValueKind::kCons && is_same(c, pair.head, c.args[0])) return item;
   }
   return c.values.nil();
 }
@@ -174,5 +184,17 @@ constexpr BuiltinEntry kListTable[] = {
 }  // namespace
 
 std::span<const BuiltinEntry> list_builtins() { return kListTable; }
+
+bool is_same(const BuiltinCall& c, ValueId a, ValueId b) {
+  if (!c.values.same(a, b)) return false;
+  if (c.values.may_be_two(a, false)) c.values.doubt(kAlike);
+  return true;
+}
+
+bool is_equal(const BuiltinCall& c, ValueId a, ValueId b) {
+  if (!c.values.equal(a, b)) return false;
+  if (c.values.may_be_two(a, true)) c.values.doubt(kAlike);
+  return true;
+}
 
 }  // namespace parallax::compiler

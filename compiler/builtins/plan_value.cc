@@ -267,6 +267,52 @@ bool ValueStore::equal(ValueId a, ValueId b) const {
   return true;
 }
 
+bool ValueStore::may_be_two(ValueId id, bool equal) const {
+  std::vector<ValueId> open = {id};
+  std::set<std::uint32_t> seen;  // parts may be shared
+  while (!open.empty()) {
+    const auto next = open.back();
+    open.pop_back();
+    const auto& value = values_[next];
+    switch (value.kind) {
+      case ValueKind::kString:
+        if (!equal) return true;
+        break;
+      case ValueKind::kCons:
+        if (!equal) return true;
+        if (!seen.insert(next.index()).second) break;
+        open.push_back(value.tail);
+        open.push_back(value.head);
+        break;
+      case ValueKind::kVector:
+      case ValueKind::kQuaternion:
+      case ValueKind::kPose:
+      case ValueKind::kTransform:
+      case ValueKind::kUnknown:
+      case ValueKind::kFailure:
+      case ValueKind::kNetwork:
+        return true;
+      case ValueKind::kDesignator:
+        if (value.identity == 0) return true;
+        break;
+      case ValueKind::kFunction:
+        if (!value.function.builtin && !is_nil(value.head)) return true;
+        break;
+      case ValueKind::kNil:
+      case ValueKind::kSymbol:
+      case ValueKind::kNumber:
+      case ValueKind::kModel:
+      case ValueKind::kCounter:
+      case ValueKind::kNotGiven:
+      case ValueKind::kFurther:
+      case ValueKind::kValues:
+      case ValueKind::kCell:
+        break;
+    }
+  }
+  return false;
+}
+
 ValueId ValueStore::model(ModelValueId id) {
   Value value;
   value.kind = ValueKind::kModel;

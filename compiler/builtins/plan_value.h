@@ -129,6 +129,13 @@ class ValueStore {
   /// structure: there are no two lists that differ in nothing but their identity.
   bool same(ValueId a, ValueId b) const;
   bool equal(ValueId a, ValueId b) const;
+  /// May two things that Lisp tells apart have this value? `equal` looks into lists and strings,
+  /// `eql` does not.
+  bool may_be_two(ValueId id, bool equal) const;
+  /// Says why the answer of a built-in may be another one on the robot; the text is a literal.
+  void doubt(std::string_view why) { doubt_ = why; }
+  /// The last doubt since this was asked; empty: none.
+  std::string_view take_doubt() { return std::exchange(doubt_, {}); }
   /// The first of multiple values; any other value is itself.
   ValueId primary(ValueId id) const;
 
@@ -155,6 +162,7 @@ class ValueStore {
   std::map<std::string, ValueId> ids_;
   ValueId truth_;
   std::int64_t gensyms_ = 0;
+  std::string_view doubt_;
   bool from_data_ = false;                  // values exist that know where they came from
   mutable std::int64_t elements_read_ = 0;  // a statistic, no part of the value
   std::size_t text_size_ = 0;

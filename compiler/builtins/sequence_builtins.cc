@@ -106,7 +106,7 @@ BuiltinResult adjoin(const BuiltinCall& c) {
   const auto is_model = [&](ValueId id) { return c.values.kind(id) == ValueKind::kModel; };
   bool open = is_model(c.args[0]) && !items->empty();
   for (const auto item : *items) {
-    if (c.values.same(item, c.args[0])) return c.args[1];
+    if (is_same(c, item, c.args[0])) return c.args[1];
     open = open || is_model(item);
   }
   if (open) return BuiltinFailure{BuiltinError::kModelList, "a search among values of the model"};

@@ -13,6 +13,8 @@ namespace {
 
 using Test = bool (*)(const Value& value);
 
+constexpr std::string_view kNamed = "whether a detected object or its name is meant";
+
 bool is(const Value& value, ValueKind kind) { return value.kind == kind; }
 bool is_symbol(const Value& v) { return is(v, ValueKind::kSymbol) || is(v, ValueKind::kNil); }
 bool is_list(const Value& v) { return is(v, ValueKind::kCons) || is(v, ValueKind::kNil); }
@@ -118,10 +120,10 @@ std::optional<bool> has_type(const BuiltinCall& c, ValueId id, ValueId type) {
     if (!part) return std::nullopt;
     return !*part;
   }
-  if (word == "eql" && parts->size() == 2) return c.values.same(id, (*parts)[1]);
+  if (word == "eql" && parts->size() == 2) return is_same(c, id, (*parts)[1]);
   if (word == "member") {
     return std::any_of(parts->begin() + 1, parts->end(),
-                       [&](ValueId item) { return c.values.same(id, item); });
+                       [&](ValueId item) { return is_same(c, id, item); });
   }
   const bool number = word == "integer" || word == "float" || word == "real" ||
                       word == "rational" || word == "number" || word == "single-float" ||
@@ -132,16 +134,28 @@ std::optional<bool> has_type(const BuiltinCall& c, ValueId id, ValueId type) {
   return in_bounds(c, value, *parts);
 }
 
+/// A detected object is also its name, which is a symbol or a string. None: that is no type.
+std::optional<bool> has_type_as_name(const BuiltinCall& c) {
+  const auto symbol = has_type(c, c.values.keyword("name"), c.args[1]);
+  const auto string = has_type(c, c.values.string("name"), c.args[1]);
+  if (!symbol || !string) return std::nullopt;
+  return *symbol || *string;
+}
+
+bool is_model(const BuiltinCall& c) { return c.values.kind(c.args[0]) == ValueKind::kModel; }
+
 BuiltinResult typep(const BuiltinCall& c) {
   const auto holds = has_type(c, c.args[0], c.args[1]);
   if (!holds) return c.wrong(1, "a type");
+  if (is_model(c) && has_type_as_name(c) != holds) c.values.doubt(kNamed);
   return c.values.boolean(*holds);
 }
 
 /// Nil only if the value certainly has another type: declarations name types that we do not know.
 BuiltinResult may_be(const BuiltinCall& c) {
   if (c.values.kind(c.args[0]) == ValueKind::kUnknown) return c.values.truth();
-  return c.values.boolean(has_type(c, c.args[0], c.args[1]).value_or(true));
+  const bool named = is_model(c) && has_type_as_name(c).value_or(true);
+  return c.values.boolean(named || has_type(c, c.args[0], c.args[1]).value_or(true));
 }
 
 /// (%failure class keyword value...): a condition with slots.
@@ -170,7 +184,11 @@ BuiltinResult slot(const BuiltinCall& c) {
 /// A predicate by the name of the type that it tests.
 template <Test kTest>
 BuiltinResult is_of(const BuiltinCall& c) {
-  return c.values.boolean(kTest(c.values[c.args[0]]));
+  const bool holds = kTest(c.values[c.args[0]]);
+  const auto symbol = c.values.keyword("name"), string = c.values.string("name");
+  const bool named = kTest(c.values[symbol]) || kTest(c.values[string]);
+  if (is_model(c) && named != holds) c.values.doubt(kNamed);
+  return c.values.boolean(holds);
 }
 bool is_string(const Value& v) { return is(v, ValueKind::kString); }
 bool is_cons(const Value& v) { return is(v, ValueKind::kCons); }

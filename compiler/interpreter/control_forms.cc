@@ -264,9 +264,6 @@ void form_case(FormCompiler& c, DatumId form, FormItems items) {
     const auto keys = list ? c.data.children(parts[0]) : single;
     std::vector<std::size_t> to_body;
     for (const auto key : any ? FormItems() : keys) {
-      if (c.data.is_string(key) || !c.data.children(key).empty()) {
-        c.code.code().gaps.push_back({"a string or list as a key", key, GapKind::kMeaning});
-      }
       case_clause_test(c, key, place, clause);
       const auto to_next = c.code.jump(PlanOp::kJumpIfNil, key);
       to_body.push_back(c.code.jump(PlanOp::kJump, key));

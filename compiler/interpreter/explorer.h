@@ -34,6 +34,8 @@ struct Job {
   std::optional<std::variant<StopPerform, StopProof>> proof = {};
   std::vector<std::uint32_t> answers = {};  // the model's answers to the rules' questions so far
   std::optional<StopPerform> begin = {};    // goes on by beginning it: its goal does not hold
+  std::optional<PlanTurn> ask = {};         // a branch goes on by asking this
+  bool in_turn = false;                     // what it asks now is what the branch waited for
 };
 
 /// Explores the states of a plan depth first, success before failure, and writes the graph.
@@ -68,6 +70,7 @@ class Explorer {
   void write_gaps();
   std::optional<PlanTarget> advance(Job& job);
   std::optional<PlanTarget> stopped(PlanState& state, const PlanStop& stop);
+  PlanStop next_stop(Job& job);
   bool has_room(const StateKey& key, DatumId form);
   std::optional<Job> next_job();
   std::optional<PlanTarget> perform(PlanState& state, const StopPerform& stop);
@@ -89,7 +92,9 @@ class Explorer {
   Ruled ask_rules(Job& job);
   Ruled ground(Job& job, const StopPerform& perform);
   Ruled prove(Job& job, const StopProof& proof);
-  Ruled ask_model(const Job& job, const ProofQuestion& question, DatumId form);
+  Ruled ask_model(Job& job, const ProofQuestion& question, DatumId form);
+  static bool must_wait(Job& job) { return !job.in_turn && PlanMachine::waits_to_ask(job.state); }
+  Ruled wait_to_ask(Job& job, const PlanTurn& turn);
   Ruled nothing_fits(Job& job, const StopPerform& perform, bool fits);
   bool is_ruled(const StopPerform& perform) const;
   StopPerform named(const StopPerform& stop, const PerformResolver::Reference& reference,
@@ -98,9 +103,9 @@ class Explorer {
   BranchId branch(FormulaTree guard, DatumId form);
   BranchId free_branch(std::string choice, DatumId form);
   std::optional<PlanTarget> question(PlanState& state, const StopQuestion& stop);
-  /// Asks the model whether the goal of an action holds already; goes on if it has none that
-  /// counts.
-  Ruled ask_goal(PlanState& state, const StopPerform& perform);
+  /// Asks the model or the rules whether the goal of an action holds already. None: it has no goal
+  /// that counts.
+  std::optional<Ruled> ask_goal(Job& job, const StopPerform& perform);
   base::Result<FormulaTree> guard_of(const StopQuestion& stop);
   ValueId found_object(ModelValueId id, ValueId designator);
   ModelValueId free_register(const PlanState& state, DatumId form, const std::string& variable);

@@ -124,6 +124,20 @@ class ClauseReader {
 
 }  // namespace
 
+/// A head whose list of arguments ends in a variable fits any number that is large enough.
+bool FactBase::has(std::string_view name, std::size_t arguments) const {
+  using Kind = FactClause::Node::Kind;
+  const auto found = clauses.find(name);
+  if (found == clauses.end()) return false;
+  return std::any_of(found->second.begin(), found->second.end(), [&](const FactClause& clause) {
+    std::size_t items = 0;
+    auto rest = clause.head;
+    for (; clause.nodes[rest].kind == Kind::kPair; rest = clause.nodes[rest].second) ++items;
+    const bool open = clause.nodes[rest].kind == Kind::kVariable;
+    return open ? items <= arguments + 1 : items == arguments + 1;
+  });
+}
+
 ClauseInstance instance_of(const FactClause& clause, TermStore& terms) {
   std::vector<PrologTermId> made;
   std::vector<std::optional<PrologTermId>> variables(clause.variables);

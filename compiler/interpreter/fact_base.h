@@ -39,6 +39,8 @@ ClauseInstance instance_of(const FactClause& clause, TermStore& terms);
 struct FactBase {
   std::map<std::string, std::vector<FactClause>, std::less<>> clauses;
   bool has(std::string_view name) const { return clauses.find(name) != clauses.end(); }
+  /// Has it a clause for so many arguments?
+  bool has(std::string_view name, std::size_t arguments) const;
 };
 
 inline constexpr std::string_view kGroundingRule = "action-grounding";

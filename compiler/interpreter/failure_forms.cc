@@ -44,6 +44,15 @@ std::uint32_t compile_handler(FormCompiler& c, const HandlerSource& handler,
   return unit;
 }
 
+/// Does the clean-up or handler neither act nor look at anything, as one of log entries and events
+/// only?
+bool does_nothing(const PlanUnit& unit) {
+  return std::all_of(unit.code.begin(), unit.code.end(), [](const PlanInstruction& instruction) {
+    return instruction.op == PlanOp::kConstant || instruction.op == PlanOp::kPop ||
+           instruction.op == PlanOp::kEndCleanup || instruction.op == PlanOp::kEndHandler;
+  });
+}
+
 void handling(FormCompiler& c, DatumId form, const std::vector<HandlerSource>& handlers,
               FormItems body) {
   const auto block = c.code.open_block("nil");
@@ -58,7 +67,7 @@ void handling(FormCompiler& c, DatumId form, const std::vector<HandlerSource>& h
   for (const auto& handler : handlers) {
     const auto unit = compile_handler(c, handler, start);
     for (const auto name : handler.classes) {
-      const auto known = c.handled_class(name);
+      const auto known = c.handled_class(name, does_nothing(c.code.code().units[unit]));
       if (!known) continue;
       // CRAM names the function of a clause by its class: of two with one name the last is called.
       for (auto& clause : table) {
@@ -369,14 +378,6 @@ void form_handler_case(FormCompiler& c, DatumId form, FormItems items) {
     close_variables(c, scope, 1, form);
   }
   for (const auto jump : to_end) c.code.patch_jump(jump);
-}
-
-/// Does the clean-up neither act nor look at anything, as one of log entries and events only?
-bool does_nothing(const PlanUnit& unit) {
-  return std::all_of(unit.code.begin(), unit.code.end(), [](const PlanInstruction& instruction) {
-    return instruction.op == PlanOp::kConstant || instruction.op == PlanOp::kPop ||
-           instruction.op == PlanOp::kEndCleanup;
-  });
 }
 
 void form_unwind_protect(FormCompiler& c, DatumId form, FormItems items) {

@@ -31,6 +31,12 @@ constexpr Hint kReactive[] = {
     {"partial-order", "write the steps in one of the orders, in a `seq`"},
     {"with-policy", "write the body alone, in a `progn`, and check the policy after its performs"},
     {"with-policies", "write the body alone, in a `progn`, and check them after its performs"},
+    {"with-named-policy", "write the body alone, in a `progn`, and check it after its performs"},
+    {"with-named-policies",
+     "write the body alone, in a `progn`, and check them after its performs"},
+    {"suspend", "leave it out: tasks are no values here"},
+    {"wake-up", "leave it out: tasks are no values here"},
+    {"evaporate", "let the branch of a `pursue` end or fail, which ends the others"},
     {"with-task-suspended", "write the body alone, in a `progn`"},
     {"with-task", "write the body alone, in a `progn`"},
     {"fl-funcall", "write the function on fluents: `fl-and`, `fl-or`, `fl-not`, `fl<` ..."},
@@ -46,6 +52,11 @@ constexpr Hint kRejected[] = {
     {"call-next-method", "write the other method's body out"},
     {"catch", "use `block`"},
     {"throw", "use `return-from`"},
+    {"restart-case", "use `block`: a handler may leave it by `return-from`"},
+    {"with-simple-restart", "use `block`: a handler may leave it by `return-from`"},
+    {"restart-bind", "use `flet`: a handler may call the function"},
+    {"invoke-restart", "use `return-from` with a `block` in place of the restart"},
+    {"find-restart", "use `return-from` with a `block` in place of the restart"},
     {"unquote", "a comma needs a backquote around it"},
     {"unquote-splicing", "a comma needs a backquote around it"},
     {"defmacro", "macros are defined at top level; use `macrolet`"},
@@ -335,14 +346,13 @@ std::optional<std::string> FormCompiler::failure_class(DatumId datum) {
   return std::nullopt;
 }
 
-std::optional<std::string> FormCompiler::handled_class(DatumId datum) {
+std::optional<std::string> FormCompiler::handled_class(DatumId datum, bool idle) {
   auto known = failure_class(datum);
-  if (known == "condition" || known == "t") {
-    warning(codes::kBroadHandler, datum, *known);
-    code.code().gaps.push_back(
-        {fmt::format("what else a handler of `{}` hears", *known), datum, GapKind::kMeaning});
-  }
-  return known;
+  if (idle || (known != "condition" && known != "t")) return known;
+  error(codes::kUnsupportedPlanForm, datum, *known,
+        "on the robot its handler also hears signals of the scheduler, at any time; name "
+        "`plan-failure` or `error`");
+  return std::nullopt;
 }
 
 std::string FormCompiler::form_name(DatumId form) const {

@@ -114,8 +114,9 @@ class FormCompiler {
   ValueId quoted_value(DatumId datum);
   /// The failure class that a symbol, perhaps quoted, names; CPL041 if there is none.
   std::optional<std::string> failure_class(DatumId datum);
-  /// The class of a handler; W-BROAD if the handler hears what is no failure as well.
-  std::optional<std::string> handled_class(DatumId datum);
+  /// The class of a handler; CPL013 if it hears what is no failure as well, unless it is `idle`:
+  /// then it makes no difference what it hears.
+  std::optional<std::string> handled_class(DatumId datum, bool idle = false);
   /// Writes the code of a function or macro of the text, if that was not done; false: it is being
   /// written, or was refused.
   bool complete(std::uint32_t unit);

@@ -317,30 +317,6 @@ void note_changed_list(FormCompiler& c, DatumId form, std::string_view name, For
       {fmt::format("what `{}` leaves of its list", name), form, GapKind::kMeaning});
 }
 
-/// `eql` tells strings and lists apart that are written alike; ours does not.
-void note_structural_key(FormCompiler& c, DatumId form, std::string_view name,
-                         FormItems arguments) {
-  static constexpr std::string_view kSearching[] = {"eq",     "eql",      "member", "assoc",
-                                                    "find",   "position", "count",  "remove",
-                                                    "delete", "rassoc",   "adjoin"};
-  const bool searches =
-      std::find(std::begin(kSearching), std::end(kSearching), name) != std::end(kSearching);
-  if (!searches || arguments.empty() || c.data.in_library(form)) return;
-  const auto is_test = [&](DatumId datum) {
-    return c.data.is_keyword(datum) && c.data.name(datum).starts_with("test");
-  };
-  if (std::any_of(arguments.begin(), arguments.end(), is_test)) return;
-  const auto is_structure = [&](DatumId datum) {
-    return c.data.is_string(datum) ||
-           (c.data.head(datum) == "quote" && !c.data.children(c.data.children(datum)[1]).empty());
-  };
-  const auto compared =
-      arguments.subspan(0, std::min<std::size_t>(arguments.size(), name.starts_with("eq") ? 2 : 1));
-  if (std::any_of(compared.begin(), compared.end(), is_structure)) {
-    c.code.code().gaps.push_back({"a string or list as a key", form, GapKind::kMeaning});
-  }
-}
-
 }  // namespace
 
 void compile_call(FormCompiler& c, DatumId form, std::string_view name, const Callee& callee,
@@ -353,10 +329,7 @@ void compile_call(FormCompiler& c, DatumId form, std::string_view name, const Ca
     builtin.builtin = known;
     return compile_call(c, form, name, builtin, arguments);
   }
-  if (ours || callee.builtin) {
-    note_changed_list(c, form, name, arguments);
-    note_structural_key(c, form, name, arguments);
-  }
+  if (ours || callee.builtin) note_changed_list(c, form, name, arguments);
   if (callee.function != nullptr) {
     if (callee.function->top_level && c.in_function) {
       c.error(codes::kUnsupportedPlanForm, form, name,

@@ -62,9 +62,11 @@ class PerformResolver {
     return constants_.find(name);
   }
   const QueryBinding* find_query(std::string_view name, std::size_t arguments) const;
-  /// Formula of the goal, a list, that an action designator has; none, with W-GOAL, if the table
-  /// does not bind it. Another error was reported.
+  /// Formula of the goal, a list, that an action designator has; none if the table does not bind
+  /// it. Another error was reported.
   base::Result<std::optional<FormulaTree>> goal_formula(ValueId goal, base::SourceRange source);
+  /// Says once (W-GOAL) that nothing tells whether the goal holds.
+  void tell_unbound_goal(ValueId goal, base::SourceRange source);
   /// The goals that W-GOAL told of, with the performs that have them, each once.
   const std::vector<std::pair<base::SourceRange, std::string>>& unbound_goals() const {
     return unbound_goals_;

@@ -50,7 +50,7 @@ void put_aside(PlanState& state, std::size_t depth) {
   auto nested = take_above(state.pars, depth + 1);
   auto& par = state.pars[depth];
   auto& own = par.branches[par.active];
-  own.fresh = false;
+  own.fresh = own.awake = false;
   own.pars = std::move(nested);
   own.frames = take_above(state.frames, par.frames);
   own.guards = take_above(state.guards, par.guards);
@@ -164,7 +164,7 @@ void find_endings(const PlanPar& par, PlanMachine::BranchPath& path,
 
 namespace {
 
-/// Does the branch wait at a perform, not at a `sleep`?
+/// Does the branch wait at a perform or a question, not at a `sleep`?
 bool resume_performs(const PlanState& state, const PlanMachine::BranchPath& path) {
   const auto* par = &state.pars.front();
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
@@ -222,7 +222,7 @@ PlanMachine::Step PlanMachine::end_branch(PlanState& state) {
   auto& par = state.pars.back();
   auto& own = par.branches[par.active];
   own.done = true;
-  own.fresh = false;
+  own.fresh = own.asks = own.awake = false;
   own.result = state.stack.back();
   // A failure that came first decides.
   if (par.exit && !par.failure && !par.value) par.value = own.result;
@@ -235,8 +235,9 @@ PlanMachine::Step PlanMachine::end_branch(PlanState& state) {
 /// The branch that runs has failed, and its clean-ups have run.
 PlanMachine::Step PlanMachine::fail_branch(PlanState& state, ValueId failure) {
   auto& par = state.pars.back();
-  par.branches[par.active].done = true;
-  par.branches[par.active].fresh = false;
+  auto& own = par.branches[par.active];
+  own.done = true;
+  own.fresh = own.asks = own.awake = false;
   const auto is_done = [](const PlanBranchState& branch) { return branch.done; };
   if (!par.tries) {
     if (!par.failure) par.failure = failure;
@@ -296,8 +297,12 @@ std::optional<PlanStop> PlanMachine::wait(PlanState& state, const PlanTurn& turn
   if (!goes_on) {
     goes_on = std::any_of(state.frames.begin() + decided->frames, state.frames.end(), runs_cleanup);
   }
+  // A question takes no time: behind one the branch is still on its way to the same perform.
   auto& par = state.pars.back();
-  if (goes_on) par.branches[par.active].turn = turn;
+  auto& own = par.branches[par.active];
+  goes_on = goes_on || own.asks;
+  own.asks = goes_on && turn.asks != TurnQuestion::kNone;
+  if (goes_on) own.turn = turn;
   put_aside(state, state.pars.size() - 1);
   return next_branch(state);
 }
@@ -409,12 +414,18 @@ std::vector<PlanMachine::Ending> PlanMachine::endings(const PlanState& state) {
   return out;
 }
 
-std::optional<StopPerform> PlanMachine::resume(PlanState& state, const BranchPath& path) {
+PlanTurn PlanMachine::resume(PlanState& state, const BranchPath& path) {
   for (const auto branch : path) put_in_place(state, branch);
   auto& par = state.pars.back();
-  const auto turn = *std::exchange(par.branches[par.active].turn, std::nullopt);
-  if (turn.sleeps) return std::nullopt;
-  return StopPerform{turn.designator, turn.form};
+  auto& own = par.branches[par.active];
+  own.awake = own.turn->sleeps;
+  return *std::exchange(own.turn, std::nullopt);
+}
+
+bool PlanMachine::waits_to_ask(PlanState& state) {
+  if (state.pars.empty()) return false;
+  auto& par = state.pars.back();
+  return !std::exchange(par.branches[par.active].awake, false);
 }
 
 std::optional<PlanStop> PlanMachine::end_par(PlanState& state, const Ending& ending) {

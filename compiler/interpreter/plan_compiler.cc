@@ -64,6 +64,11 @@ class PlanCompiler {
     if (!check_entry_call()) return sink_.already_reported();
     for (const auto form : text_.forms) flatten(form);
     named_ = note_designator_use(text_, c_.code.code());
+    // Failure classes come first: a handler or a method may stand above the definition of its
+    // class.
+    for (const auto form : forms_) {
+      if (c_.data.head(form) == "define-condition") define_condition(form, c_.data.children(form));
+    }
     find_reached(entry);
     collect_definitions();
     add_library();
@@ -136,7 +141,7 @@ class PlanCompiler {
     }
     for (const auto& [name, methods] : methods_) {
       DatumId function;
-      auto error = read_methods(c_.data, methods, structures_, function);
+      auto error = read_methods(c_.data, methods, structures_, c_.code.code().classes, function);
       if (error) structure_errors_.emplace(methods.front(), *std::move(error));
       if (!error) reach_.define(name, generics_.emplace(name, function).first->second);
     }
@@ -339,10 +344,6 @@ class PlanCompiler {
   }
 
   void collect_definitions() {
-    // Failure classes come first: a handler may stand above the definition of its class.
-    for (const auto form : forms_) {
-      if (c_.data.head(form) == "define-condition") define_condition(form, c_.data.children(form));
-    }
     for (std::size_t i = 0; i < forms_.size(); ++i) {
       c_.position = i + 1;
       if (!define(forms_[i], false)) others_.emplace_back(i + 1, forms_[i]);

@@ -79,8 +79,10 @@ class KeyWriter {
       number(par.failure ? par.failure->index() + 1 : 0);
       number(par.value ? par.value->index() + 1 : 0);
       for (const auto& branch : par.branches) {
+        const auto asks = branch.turn ? static_cast<std::uint32_t>(branch.turn->asks) : 0U;
         number((branch.started ? 1U : 0U) + (branch.done ? 2U : 0U) + (branch.turn ? 4U : 0U) +
-               (branch.fresh ? 8U : 0U));
+               (branch.fresh ? 8U : 0U) + (branch.asks ? 16U : 0U) + (branch.awake ? 32U : 0U) +
+               64U * asks);
         number(branch.result.index());
         if (branch.turn) number(branch.turn->designator.index());
         part(branch.frames, branch.guards, branch.stack);
@@ -403,6 +405,7 @@ PlanMachine::Step PlanMachine::builtin(PlanState& state, const PlanInstruction& 
   refresh_links(state, arguments);
   auto result = call_builtin(instruction.a, arguments, code_.classes, limits_.location_samples,
                              state.links, values_);
+  note_doubt(instruction.source);
   if (const auto* value = std::get_if<ValueId>(&result)) {
     state.stack.push_back(*value);
     return {};

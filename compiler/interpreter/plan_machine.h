@@ -3,9 +3,11 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -63,12 +65,17 @@ struct PlanGuard {
   std::uint32_t height = 0;  // of the stack when it began
 };
 
-/// A perform, a `sleep` or a `wait-for` that a branch of a `par` waits at for its turn.
+/// What a branch of a `par` asks the model when it has its turn: a fluent of `holds`, a goal of
+/// `prolog`, the goal of an action, or which function carries out an action.
+enum class TurnQuestion : std::uint8_t { kNone, kFluent, kProof, kAllProofs, kGoal, kGrounding };
+
+/// A perform, a `sleep`, a `wait-for` or a question that a branch of a `par` waits at for its turn.
 struct PlanTurn {
-  ValueId designator;
+  ValueId designator;  // of a question: the fluent or the goal
   DatumId form;
   bool sleeps = false;
   std::optional<ValueId> until = std::nullopt;  // it has a turn while this fluent is not nil
+  TurnQuestion asks = TurnQuestion::kNone;
 };
 
 struct PlanPar;
@@ -78,6 +85,8 @@ struct PlanPar;
 struct PlanBranchState {
   bool started = false;
   bool fresh = false;  // on the way to its first perform
+  bool asks = false;   // has asked the model on the way to a perform
+  bool awake = false;  // woke up at this turn, which may be that of a question as well
   bool done = false;
   ValueId result;  // done
   std::optional<PlanTurn> turn;
@@ -145,7 +154,8 @@ struct StopQuestion {                           // only the model knows
 struct StopProof {  // the goal of a `prolog` form
   ValueId goal;
   DatumId form;
-  bool all = false;  // every solution, not just one
+  bool all = false;                                  // every solution, not just one
+  std::optional<StopPerform> action = std::nullopt;  // it is the goal of this action
 };
 struct StopDone {};
 struct StopFailed {
@@ -226,8 +236,11 @@ class PlanMachine {
   static std::vector<Ending> endings(const PlanState& state);
   /// Ends the `par` like that; run goes on after it.
   std::optional<PlanStop> end_par(PlanState& state, const Ending& ending);
-  /// Puts that branch in place; its perform is next. None: it wakes up, and run goes on.
-  static std::optional<StopPerform> resume(PlanState& state, const BranchPath& path);
+  /// Must the running branch wait for its turn before it asks the model? What others perform first
+  /// may change the answer. One that has just woken up may ask once.
+  static bool waits_to_ask(PlanState& state);
+  /// Puts that branch in place. Its perform or its question is next; if it slept, run goes on.
+  static PlanTurn resume(PlanState& state, const BranchPath& path);
   /// Lets a function of the plan answer, in a task of its own; run goes into it.
   std::optional<PlanStop> enter(PlanState& state, std::uint32_t unit,
                                 const std::vector<ValueId>& arguments, DatumId form);
@@ -247,6 +260,11 @@ class PlanMachine {
   }
   /// Says why a built-in has no value.
   void report(const BuiltinFailure& failure, std::uint32_t builtin, DatumId form);
+  /// Where and why the answer of a built-in may be another one on the robot.
+  const std::map<DatumId, std::string_view>& doubts() const { return doubts_; }
+  void note_doubt(DatumId at) {
+    if (const auto why = values_.take_doubt(); !why.empty()) doubts_.emplace(place_of(at), why);
+  }
   bool stopped() const { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
   /// The bound of values, text or steps that was reached, or that somebody ended it.
   void report_full(DatumId at);
@@ -321,6 +339,7 @@ class PlanMachine {
   std::vector<std::uint32_t> handlers_run_;
   std::vector<bool> handlers_met_;
   std::optional<Blame> blame_;
+  std::map<DatumId, std::string_view> doubts_;
   const PlanState* running_ = nullptr;
 };
 

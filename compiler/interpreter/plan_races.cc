@@ -1,7 +1,7 @@
-// Variables, globals and cells that units may read and write, by their code and that of all that
-// they may call. Where a function value is called nobody can tell which: any that the plan makes
-// counts. Cells of one kind are taken for one, so an answer may name what never meets, but misses
-// nothing.
+// Variables, globals, cells and links of designators that units may read and write, by their code
+// and that of all that they may call. Where a function value is called nobody can tell which: any
+// that the plan makes counts. Cells of one kind are taken for one, so an answer may name what never
+// meets, but misses nothing.
 #include "compiler/interpreter/plan_races.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace parallax::compiler {
 namespace {
 
-enum class Shared : std::uint8_t { kVariable, kGlobal, kCells };
+enum class Shared : std::uint8_t { kVariable, kGlobal, kCells, kLinks };
 using Thing = std::tuple<Shared, std::uint32_t, std::uint32_t>;
 
 /// A built-in that reads or writes cells of one kind.
@@ -45,6 +45,10 @@ constexpr CellUse kCellUses[] = {{"%set-value", 0, true},
                                  {"%typed-slot", 3},
                                  {"slot-value", 3},
                                  {"copy-structure", 3}};
+
+/// Built-ins that look at which designators have been equated; `equate` and its like change that.
+constexpr std::string_view kLinkReaders[] = {"current-desig", "newest-effective-designator",
+                                             "first-desig", "desig-equal", "reference"};
 
 struct Uses {
   std::set<Thing> read, written;
@@ -133,6 +137,22 @@ class RaceFinder {
     if (op == PlanOp::kLoadGlobal) out.read.insert({Shared::kGlobal, a, 0});
     if (op == PlanOp::kStoreSpecial) out.written.insert({Shared::kGlobal, a, 0});
     if (op == PlanOp::kBuiltin) note_cells(plan_builtins()[a].name, out);
+    if (code_.identities) note_links(instruction, out);
+  }
+
+  /// A perform is about the designators that are current.
+  void note_links(const PlanInstruction& instruction, Uses& out) const {
+    const Thing links = {Shared::kLinks, 0, 0};
+    if (instruction.op == PlanOp::kPerform) {
+      out.read.insert(links);
+      if (ruled_) out.written.insert(links);
+    }
+    if (instruction.op != PlanOp::kBuiltin) return;
+    const auto name = plan_builtins()[instruction.a].name;
+    const bool child = name == "make-designator" && instruction.b == 3;
+    if (name == "equate" || name == "next-solution" || child) out.written.insert(links);
+    const auto reads = std::find(std::begin(kLinkReaders), std::end(kLinkReaders), name);
+    if (reads != std::end(kLinkReaders)) out.read.insert(links);
   }
 
   static void note_cells(std::string_view builtin, Uses& out) {

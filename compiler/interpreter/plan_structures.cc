@@ -220,8 +220,9 @@ struct Method {
 
 class MethodReader {
  public:
-  MethodReader(LispData& data, const std::vector<PlanStructure>& known)
-      : data_(data), known_(known) {}
+  MethodReader(LispData& data, const std::vector<PlanStructure>& known,
+               const FailureClasses& classes)
+      : data_(data), known_(known), classes_(classes) {}
 
   std::optional<StructureError> read(const std::vector<DatumId>& forms, DatumId& out) {
     std::vector<Method> methods;
@@ -320,8 +321,7 @@ class MethodReader {
       for (std::size_t i = 0; i < method.required.size(); ++i) {
         const auto& type = method.required[i].second;
         const auto& others = other.required[i].second;
-        const bool unknown = method.rank[i] == kUnknown && other.rank[i] == kUnknown;
-        if (unknown && print_datum(data_, *type) != print_datum(data_, *others)) {
+        if (type && others && is_tie(*type, *others)) {
           return StructureError{*type, "which type of its methods comes first is not known"};
         }
       }
@@ -330,9 +330,17 @@ class MethodReader {
     return std::nullopt;
   }
 
+  /// Which of two types is the more special one for a value of both that they may have?
+  bool is_tie(DatumId type, DatumId other) const {
+    if (print_datum(data_, type) == print_datum(data_, other)) return false;
+    if (rank_of(type) == kUnknown && rank_of(other) == kUnknown) return true;
+    const bool named = data_.is_symbol(type) && data_.is_symbol(other);
+    return named && classes_.cross(data_.name(type), data_.name(other));
+  }
+
   /// The greater the more special; types that exclude each other may have any order.
   int rank_of(DatumId type) const {
-    constexpr int kEql = 10'000, kStructure = 1'000;
+    constexpr int kEql = 10'000, kStructure = 1'000, kCondition = 500;
     static constexpr std::string_view kTypes[] = {"t",       "sequence", "list",  "symbol",
                                                   "number",  "real",     "float", "rational",
                                                   "integer", "cons",     "null",  "keyword"};
@@ -342,7 +350,8 @@ class MethodReader {
       if (one.name == name) return kStructure + static_cast<int>(one.types.size());
     }
     const auto* found = std::find(std::begin(kTypes), std::end(kTypes), name);
-    return found == std::end(kTypes) ? kUnknown : static_cast<int>(found - std::begin(kTypes));
+    if (found != std::end(kTypes)) return static_cast<int>(found - std::begin(kTypes));
+    return classes_.canonical(name) == name ? kCondition + classes_.depth(name) : kUnknown;
   }
 
   /// ((and (typep argument 'type)...) (let ((name argument)...) form...))
@@ -368,9 +377,10 @@ class MethodReader {
     return list(type, parts);
   }
 
-  static constexpr int kUnknown = 100;  // failure classes, `string` and the like
+  static constexpr int kUnknown = 100;  // `string` and the like
   LispData& data_;
   const std::vector<PlanStructure>& known_;
+  const FailureClasses& classes_;
 };
 
 }  // namespace
@@ -407,8 +417,9 @@ std::optional<std::string> type_it_makes(const LispData& data, DatumId form) {
 }
 
 std::optional<StructureError> read_methods(LispData& data, const std::vector<DatumId>& methods,
-                                           const std::vector<PlanStructure>& known, DatumId& out) {
-  return MethodReader(data, known).read(methods, out);
+                                           const std::vector<PlanStructure>& known,
+                                           const FailureClasses& classes, DatumId& out) {
+  return MethodReader(data, known, classes).read(methods, out);
 }
 
 std::optional<StructureError> read_structure(LispData& data, DatumId form,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compiler/lisp/lisp_data.h"
+#include "compiler/plan/failure_classes.h"
 
 namespace parallax::compiler {
 
@@ -44,6 +45,7 @@ std::optional<std::string> type_it_makes(const LispData& data, DatumId form);
 /// form...)`, as one function: the first method whose types fit, the most special ones first. A
 /// method without fit is a Lisp error.
 std::optional<StructureError> read_methods(LispData& data, const std::vector<DatumId>& methods,
-                                           const std::vector<PlanStructure>& known, DatumId& out);
+                                           const std::vector<PlanStructure>& known,
+                                           const FailureClasses& classes, DatumId& out);
 
 }  // namespace parallax::compiler

@@ -1,6 +1,6 @@
 // Choices between the branches of a `par` that wait for their turn, as free branches of the graph.
-// Waking a branch that sleeps performs nothing, so the number of times that branches woke up since
-// the last perform is part of a choice's identity: no cycle consists of choices alone.
+// A branch that sleeps or asks the model performs nothing at its turn, so the number of such turns
+// since the last perform is part of a choice's identity: no cycle consists of choices alone.
 #include <algorithm>
 #include <iterator>
 #include <optional>
@@ -42,10 +42,14 @@ std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
   const auto go_on = [&](std::size_t way, Job::Edge edge, std::uint32_t owner) {
     Job next{state, {}, {}, edge, owner};
     if (way < waiting.size()) {
-      next.act = PlanMachine::resume(next.state, waiting[way]);
-      if (!next.act) {
+      const auto resumed = PlanMachine::resume(next.state, waiting[way]);
+      const bool asks = resumed.asks != TurnQuestion::kNone;
+      if (asks) next.ask = resumed;
+      if (asks || resumed.sleeps) {
         ++next.state.slept;
         next.state.asleep = turn;
+      } else {
+        next.act = StopPerform{resumed.designator, resumed.form};
       }
     } else {
       next.ending = endings[way - waiting.size()];
@@ -66,7 +70,7 @@ std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
   if (std::any_of(endings.begin(), endings.end(), drops)) late_cleanups_.insert(form);
   auto key = state_key(state, values_, false);
   if (state.slept > 0) {
-    // A branch that sleeps again and again while nothing else happens: nothing comes of it.
+    // A branch that sleeps or asks again and again while nothing else happens: nothing comes of it.
     key.push_back(state.slept - 1);
     const auto before = turns_.find(key);
     if (before != turns_.end() && before->second.index() + 1 == state.asleep) {
@@ -104,6 +108,33 @@ std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
   jobs_.insert(jobs_.end(), std::make_move_iterator(jobs.rbegin()),
                std::make_move_iterator(jobs.rend()));
   return first;
+}
+
+/// What the job goes on with: a question that a branch waited to ask, a perform that is to begin,
+/// or what the machine comes to.
+PlanStop Explorer::next_stop(Job& job) {
+  const auto asked = std::exchange(job.ask, std::nullopt);
+  job.in_turn = asked.has_value();
+  if (!asked) {
+    if (job.begin) return *std::exchange(job.begin, std::nullopt);
+    return machine_.run(job.state);
+  }
+  const auto form = asked->form;
+  switch (asked->asks) {
+    case TurnQuestion::kFluent:
+      return StopQuestion{asked->designator, form};
+    case TurnQuestion::kProof:
+      return StopProof{asked->designator, form};
+    case TurnQuestion::kAllProofs:
+      return StopProof{asked->designator, form, true};
+    case TurnQuestion::kGrounding:
+      job.proof = StopPerform{resolve_links(job.state.links, values_, asked->designator), form};
+      break;
+    case TurnQuestion::kNone:
+    case TurnQuestion::kGoal:
+      break;
+  }
+  return StopPerform{asked->designator, form};
 }
 
 }  // namespace parallax::compiler

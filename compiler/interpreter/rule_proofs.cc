@@ -58,6 +58,16 @@ bool RuleProofs::is_query(std::string_view name, std::size_t arguments) {
   return resolver_.find_query(name, arguments) != nullptr;
 }
 
+bool RuleProofs::knows(ValueId goal) {
+  const auto items = values_.elements(goal);
+  if (!items || items->empty()) return false;
+  const auto& head = values_[items->front()];
+  // A goal that is written into the designator has keywords, which no predicate is called by.
+  if (head.kind != ValueKind::kSymbol || head.keyword) return false;
+  const auto name = head.text;
+  return is_query(name, items->size() - 1) || facts_.has(name, items->size() - 1);
+}
+
 /// `dTop` as plans write it, :d-top, where that leads back to it.
 ValueId RuleProofs::lisp_name(const std::string& constant) {
   std::string out;
@@ -161,6 +171,7 @@ ProofWorld::Computed RuleProofs::call_builtin_named(const std::string& function,
   }
   const auto result = call_builtin(*builtin, arguments, code_.classes,
                                    options_.limits.location_samples, links_, values_);
+  machine_.note_doubt(at);
   if (const auto* value = std::get_if<ValueId>(&result)) return Value{*value};
   if (const auto* equality = std::get_if<ModelEquality>(&result)) {
     return truth_of(StopQuestion{*equality, at}, answers);

@@ -49,6 +49,8 @@ class RuleProofs final : public ProofWorld {
         sink_(sink) {}
 
   bool has_grounding_rules() const { return facts_.has(kGroundingRule); }
+  /// Does a query of the binding table or a clause speak of the goal, a list of quoted data?
+  bool knows(ValueId goal);
   using Grounding = std::variant<PlanCall, NoPlanCall, ProofQuestion, ProofFailed, ProofError>;
   /// The call in the first solution of (action-grounding designator ?solution).
   Grounding ground(const StopPerform& perform, const DesignatorLinks& links,

@@ -31,13 +31,36 @@ Explorer::Ruled Explorer::ask_rules(Job& job) {
   return prove(job, std::get<StopProof>(proof));
 }
 
+/// A branch of a `par` asks when it has its turn: what others perform first may change the answer.
+Explorer::Ruled Explorer::wait_to_ask(Job& job, const PlanTurn& turn) {
+  job.proof.reset();
+  return {true, {}, machine_.wait(job.state, turn)};
+}
+
+/// The turn at which a branch asks what the proof is about.
+PlanTurn turn_of(const std::variant<StopPerform, StopProof>& proof) {
+  PlanTurn turn;
+  if (const auto* perform = std::get_if<StopPerform>(&proof)) {
+    turn = {perform->designator, perform->form};
+    turn.asks = TurnQuestion::kGrounding;
+    return turn;
+  }
+  const auto& goal = std::get<StopProof>(proof);
+  turn = {goal.action ? goal.action->designator : goal.goal, goal.form};
+  turn.asks = goal.all ? TurnQuestion::kAllProofs : TurnQuestion::kProof;
+  if (goal.action) turn.asks = TurnQuestion::kGoal;
+  return turn;
+}
+
 /// The answer decides which way the proof goes on: it is made again with one answer more.
-Explorer::Ruled Explorer::ask_model(const Job& job, const ProofQuestion& question, DatumId form) {
+Explorer::Ruled Explorer::ask_model(Job& job, const ProofQuestion& question, DatumId form) {
   if (question.ways.empty()) return {false, terminal(TerminalKind::kNever, {}, std::nullopt), {}};
+  if (job.answers.empty() && must_wait(job)) return wait_to_ask(job, turn_of(*job.proof));
   auto key = state_key(job.state, values_, true);
-  const bool performs = std::holds_alternative<StopPerform>(*job.proof);
-  key.push_back(performs ? std::get<StopPerform>(*job.proof).designator.index()
-                         : std::get<StopProof>(*job.proof).goal.index());
+  const auto* performs = std::get_if<StopPerform>(&*job.proof);
+  const auto* goal = std::get_if<StopProof>(&*job.proof);
+  key.push_back(performs != nullptr ? performs->designator.index() : goal->goal.index());
+  if (goal != nullptr && goal->action) key.push_back(goal->action->designator.index());
   key.push_back(form.index());
   key.insert(key.end(), job.answers.begin(), job.answers.end());
   const auto found = references_.find(key);
@@ -94,7 +117,8 @@ Explorer::Ruled Explorer::prove(Job& job, const StopProof& proof) {
                 "expected a quoted fluent such as '(holding left box)");
     return {};
   }
-  machine_.refresh_links(job.state, std::span(&proof.goal, 1));
+  const ValueId used[] = {proof.goal, proof.action ? proof.action->designator : proof.goal};
+  machine_.refresh_links(job.state, used);
   auto result = rules_.prove(proof, job.state.links, job.answers);
   if (const auto* question = std::get_if<ProofQuestion>(&result)) {
     job.proof = proof;
@@ -106,7 +130,14 @@ Explorer::Ruled Explorer::prove(Job& job, const StopProof& proof) {
   if (const auto* failed = std::get_if<ProofFailed>(&result)) {
     return {true, {}, machine_.raise(job.state, failed->failure)};
   }
-  job.state.stack.push_back(std::get<ProofValue>(result).value);
+  const auto value = std::get<ProofValue>(result).value;
+  if (!proof.action) {
+    job.state.stack.push_back(value);
+  } else if (values_.is_nil(value)) {
+    job.begin = proof.action;
+  } else {
+    job.state.stack.push_back(values_.nil());  // it holds: nothing is done
+  }
   return {true, {}, {}};
 }
 

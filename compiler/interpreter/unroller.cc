@@ -285,11 +285,19 @@ std::optional<PlanTarget> Explorer::advance(Job& job) {
       if (ruled.stop) return stopped(job.state, *ruled.stop);
       if (!ruled.goes_on) return ruled.target;
     }
-    const bool begins = job.begin.has_value();
-    auto stop =
-        begins ? PlanStop(*std::exchange(job.begin, std::nullopt)) : machine_.run(job.state);
+    const bool begins = job.begin.has_value() && !job.ask;
+    auto stop = next_stop(job);
+    if (job.proof) continue;
     if (const auto* goal = std::get_if<StopProof>(&stop)) {
       job.proof = *goal;
+      continue;
+    }
+    if (const auto* question = std::get_if<StopQuestion>(&stop)) {
+      const auto* fluent = std::get_if<ValueId>(&question->fluent);
+      if (fluent == nullptr || !must_wait(job)) return stopped(job.state, stop);
+      PlanTurn turn{*fluent, question->form};
+      turn.asks = TurnQuestion::kFluent;
+      if (const auto ended = machine_.wait(job.state, turn)) return stopped(job.state, *ended);
       continue;
     }
     auto* act = std::get_if<StopPerform>(&stop);
@@ -298,8 +306,10 @@ std::optional<PlanTarget> Explorer::advance(Job& job) {
     drop_dead_links(job.state, std::span(&act->designator, 1), values_);
     drop_dead_cells(job.state, std::span(&act->designator, 1), values_);
     if (!begins) {
-      const auto asked = ask_goal(job.state, *act);
-      if (!asked.goes_on) return asked.target;
+      const auto asked = ask_goal(job, *act);
+      if (asked && asked->stop) return stopped(job.state, *asked->stop);
+      if (asked && !asked->goes_on) return asked->target;
+      if (asked) continue;
     }
     if (is_ruled(*act)) {
       job.proof = *act;
@@ -358,6 +368,9 @@ void Explorer::write_gaps() {
   for (const auto& [place, goal] : resolver_.unbound_goals()) {
     graph_.gaps.push_back({fmt::format("the goal `{}`, which the table does not bind", goal), place,
                            GapKind::kMeaning});
+  }
+  for (const auto& [form, why] : machine_.doubts()) {
+    graph_.gaps.push_back({std::string(why), data_.source(form), GapKind::kMeaning});
   }
   for (const auto form : late_cleanups_) {
     const auto text =

@@ -1,5 +1,6 @@
 #include "compiler/plan/failure_classes.h"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -124,6 +125,27 @@ bool FailureClasses::is_a(std::string_view name, std::string_view ancestor) cons
     for (const auto& parent : found->second) open.push_back(parent);
   }
   return false;
+}
+
+int FailureClasses::depth(std::string_view name) const {
+  int depth = -1;
+  std::set<std::string_view> level = {name};
+  for (; !level.empty(); ++depth) {
+    std::set<std::string_view> above;
+    for (const auto one : level) {
+      const auto found = parents_.find(one);
+      if (found != parents_.end()) above.insert(found->second.begin(), found->second.end());
+    }
+    level = std::move(above);
+  }
+  return depth;
+}
+
+bool FailureClasses::cross(std::string_view one, std::string_view other) const {
+  if (is_a(one, other) || is_a(other, one)) return false;
+  return std::any_of(parents_.begin(), parents_.end(), [&](const auto& entry) {
+    return is_a(entry.first, one) && is_a(entry.first, other);
+  });
 }
 
 std::vector<std::string> FailureClasses::names() const {

@@ -29,6 +29,10 @@ class FailureClasses {
   bool add(std::string_view name, std::vector<std::string> parents);
   /// True if `name` is `ancestor` or below it. Both known.
   bool is_a(std::string_view name, std::string_view ancestor) const;
+  /// The longest way up to a class without parents: a class lies deeper than those above it.
+  int depth(std::string_view name) const;
+  /// Is neither of the two above the other, and some class below both?
+  bool cross(std::string_view one, std::string_view other) const;
   /// An error of Lisp that is no plan failure.
   bool is_lisp_error(std::string_view name) const {
     return is_a(name, "error") && !is_a(name, "plan-failure");

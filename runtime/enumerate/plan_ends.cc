@@ -75,6 +75,10 @@ std::int64_t PlanEnds::initial_states(const Trace& trace, const std::set<std::st
                         asked.contains(std::string(base::symbol_of(atom.name)));
     if (starts || counts) settings.push_back(atom.literal());
   });
+  // What every execution has does not count; `of` has told the solver what that is.
+  std::erase_if(settings, [&](Literal literal) {
+    return session_.is_fixed(literal) || session_.is_fixed(~literal);
+  });
   if (settings.empty()) return 1;
   const auto n = trace.length();
   auto assumptions = assumptions_of(trace);
@@ -88,8 +92,7 @@ std::int64_t PlanEnds::initial_states(const Trace& trace, const std::set<std::st
     ++count;
     std::vector<Literal> other = {~counting};
     for (const auto literal : settings) {
-      if (!session_.is_fixed(literal))
-        other.push_back(session_.value(literal) ? ~literal : literal);
+      other.push_back(session_.value(literal) ? ~literal : literal);
     }
     session_.add_clause(other);
   }

@@ -3,9 +3,13 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -21,6 +25,8 @@ struct PackageCall {
   std::vector<std::string> folders;
   std::string call;
   int locations = 0;  // at least
+  std::string events =
+      {};  // of a trace that must be there, worked out by hand from the plan's text
 };
 
 const std::string kFailures = "devel/cram_interfaces/cram_common_failures";
@@ -38,7 +44,9 @@ const std::vector<PackageCall> kCalls = {
      "(pp-plans::pick-up :object MILK :arm (list :left) :gripper-opening 0.1 :effort 10"
      " :left-grasp :top :look-pose ?p :left-reach-poses ?ps :left-grasp-poses ?ps"
      " :left-lift-poses ?ps)",
-     20},
+     20,
+     "Look() SetGripper(left) MoveTcp(allowAll) MoveTcp(allowHand) Grip(left,milk) "
+     "MoveTcp(allowAll) MoveArms() "},
     {{kFailures, kMobile},
      "(pp-plans::place :object MILK :arm (list :left) :target SPOT :gripper-opening 0.1"
      " :left-grasp :top :look-pose ?p :left-reach-poses ?ps :left-put-poses ?ps"
@@ -74,7 +82,9 @@ const std::vector<PackageCall> kCalls = {
      10},
     {{kFailures2020, kMobile2020},
      "(pp-plans::pick-up MILK :left 0.1 10 :top ?ps nil ?ps nil ?ps nil)",
-     8},
+     8,
+     "SetGripper(left) MoveArms() MoveArms() MoveTcp(allowAll) MoveTcp(allowAll) Grip(left,milk) "
+     "MoveTcp(allowHand) MoveTcp(allowHand) "},
     {{kFailures2020, kMobile2020}, "(pp-plans::place MILK :left ?ps nil ?ps nil ?ps nil ?ps)", 7},
     {{kFailures2020, kMobile2020}, "(pp-plans::park-arms)", 5},
     {{kFailures2020, kMobile2020, kFetch2020}, "(pr2-fd-plans::go-without-collisions SPOT)", 5},
@@ -82,12 +92,17 @@ const std::vector<PackageCall> kCalls = {
     {{kFailures2020, kMobile2020, kFetch2020}, "(pr2-fd-plans::fetch MILK :left SPOT nil)", 30},
     {{kFailures2020, kMobile2020, kFetch2020}, "(pr2-fd-plans::deliver MILK SPOT SPOT nil)", 30},
     {{kFailures2020, kMobile2020, kFetch2020}, "(pr2-fd-plans::drop-at-sink)", 1},
+    {{kFailures2020, kMobile2020, kFetch2020},
+     "(pr2-fd-plans::transport MILK SPOT SPOT :left t)",
+     40},
+    {{kFailures, kMobile, kFetch},
+     "(fd-plans::transport :object MILK :search-location SPOT :deliver-location SPOT)",
+     100},
 };
 
 std::string with_designators(std::string call) {
   const std::pair<std::string, std::string> words[] = {
-      {"MILK", "(desig:an object (type milk) (name milk))"},
-      {"SPOT", "(desig:a location (pose ?p))"}};
+      {"MILK", "(desig:an object (type milk) (name milk) (location ?spot))"}, {"SPOT", "?spot"}};
   for (const auto& [word, meaning] : words) {
     for (auto at = call.find(word); at != std::string::npos; at = call.find(word, at + 1)) {
       call.replace(at, word.size(), meaning);
@@ -95,8 +110,45 @@ std::string with_designators(std::string call) {
   }
   return "(let* ((?p (cl-transforms-stamped:make-pose-stamped \"map\" 0.0 "
          "(cl-transforms:make-3d-vector 1 0 1) (cl-transforms:make-identity-rotation)))"
-         " (?ps (list ?p))) " +
+         " (?ps (list ?p)) (?spot (desig:a location (pose ?p)))) " +
          call + ")";
+}
+
+std::vector<std::string> command(const std::string& name, const PackageCall& given,
+                                 const fs::path& cram) {
+  std::vector<std::string> words = {name,
+                                    (kGlue / "robot.e").string(),
+                                    "--bind",
+                                    (kGlue / "robot.bind").string(),
+                                    "--allow-outside",
+                                    "--plan-entry",
+                                    with_designators(given.call),
+                                    "--plan",
+                                    (kGlue / "robot.lisp").string()};
+  for (const auto& folder : given.folders) {
+    words.emplace_back("--plan");
+    words.push_back((cram / folder).string());
+  }
+  return words;
+}
+
+/// The performs of each trace of a plan that is done, in one line.
+std::set<std::string> traces_of(const CliFixture& cli, std::vector<std::string> words,
+                                std::size_t performs) {
+  words.insert(words.end(), {"--horizon", std::to_string(performs + 1), "--limit=0", "--ended=done",
+                             "--format=jsonl"});
+  std::set<std::string> out;
+  std::istringstream lines(cli.parallax(words).out);
+  for (std::string line; std::getline(lines, line);) {
+    const auto trace = nlohmann::json::parse(line);
+    if (!trace.contains("timepoints")) continue;
+    std::string events;
+    for (const auto& point : trace["timepoints"]) {
+      for (const auto& event : point["happens"]) events += event.get<std::string>() + ' ';
+    }
+    out.insert(events);
+  }
+  return out;
 }
 
 TEST_CASE("packages of CRAM are unrolled as they are") {
@@ -107,23 +159,10 @@ TEST_CASE("packages of CRAM are unrolled as they are") {
   }
   const CliFixture cli;
   const fs::path cram = given;
-  for (const auto& [folders, call, locations] : kCalls) {
-    CAPTURE(call);
-    std::vector<std::string> words = {"compile",
-                                      (kGlue / "robot.e").string(),
-                                      "--horizon=12",
-                                      "--bind",
-                                      (kGlue / "robot.bind").string(),
-                                      "--emit=cfg",
-                                      "--allow-outside",
-                                      "--plan-entry",
-                                      with_designators(call),
-                                      "--plan",
-                                      (kGlue / "robot.lisp").string()};
-    for (const auto& folder : folders) {
-      words.emplace_back("--plan");
-      words.push_back((cram / folder).string());
-    }
+  for (const auto& one : kCalls) {
+    CAPTURE(one.call);
+    auto words = command("compile", one, cram);
+    words.insert(words.end(), {"--horizon=12", "--emit=cfg"});
     const auto result = cli.parallax(words);
     CAPTURE(result.err);
     CHECK(result.code == 0);
@@ -132,7 +171,12 @@ TEST_CASE("packages of CRAM are unrolled as they are") {
       ++found;
       at = result.out.find("\nL", at + 1);
     }
-    CHECK(found >= locations);
+    CHECK(found >= one.locations);
+    if (one.events.empty()) continue;
+    const auto performs = std::count(one.events.begin(), one.events.end(), '(');
+    const auto traces =
+        traces_of(cli, command("traces", one, cram), static_cast<std::size_t>(performs));
+    CHECK(traces.contains(one.events));
   }
 }
 

@@ -127,6 +127,22 @@ TEST_CASE("traces say how many initial states they stand for") {
   CHECK(text.find("\n  from 3 initial states that differ in nothing printed\n") !=
         std::string::npos);
   CHECK(text.find("from 1 initial") == std::string::npos);
+  // More than ten are not counted.
+  auto model = cli.read("things.e");
+  const std::string items = "item cup, jar, pan";
+  model.replace(model.find(items), items.size(), items + ", a, b, c, d, e, f, g, h");
+  cli.write("things.e", model);
+  CHECK(cli.parallax(all).out.find(
+            "\n  from at least 10 initial states that differ in nothing printed\n") !=
+        std::string::npos);
+  int cut = 0;
+  const auto many = json_of(cli, all)["list"];
+  for (const auto& trace : many) {
+    if (!trace.value("more_initial_states", false)) continue;
+    ++cut;
+    CHECK(trace["initial_states"] == 10);
+  }
+  CHECK(cut == 1);
 }
 
 TEST_CASE("compiled models of plans that are cut say so, and who answers about them does") {

@@ -266,9 +266,8 @@ TEST_CASE("verify: nothing is proved of a plan of which something is approximate
       {"(perform (a motion (type going) (goal (robot-in r2)) (object (an object (name r2)))))", ""},
       {"(perform (an action (type picking-up) (goal (object-held box))))",
        "the goal `object-held`, which the table does not bind"},
-      {"(with-failure-handling ((condition (e) (return))) " + go + ")",
-       "what else a handler of `condition` hears"},
-      {"(handler-case " + go + " (t (e) e))", "what else a handler of `t` hears"}};
+      {"(when (eql \"a\" \"a\") " + go + ")", "equal things taken for one thing"},
+      {"(with-failure-handling ((condition (e) (ros-warn (a b) \"~a\" e))) " + go + ")", ""}};
   for (const auto& [text, gap] : plans) {
     CAPTURE(text);
     cli.write("plan.lisp", text + "\n");
@@ -277,7 +276,7 @@ TEST_CASE("verify: nothing is proved of a plan of which something is approximate
     const auto answer = json_of(cli, verify);
     CHECK(claim.code == 0);
     CHECK(!answer.contains("every_order"));
-    if (gap.empty()) {  // only actions have goals
+    if (gap.empty()) {  // only actions have goals, and it makes no difference what a log tells
       CHECK(answer["proof"] == "checked");
       continue;
     }

@@ -16,11 +16,11 @@ constexpr std::size_t kBlock = std::size_t{1} << 16U;
 constexpr std::int64_t kAskedOneByOne = 16;
 
 /// Initial states of one trace that are counted; each costs a solver call.
-constexpr std::int64_t kCountedStarts = 100;
+constexpr std::int64_t kCountedStarts = 10;
 
 std::string starts_text(std::int64_t starts) {
-  return fmt::format("  from {}{} initial states that differ in nothing printed\n", starts,
-                     starts < kCountedStarts ? "" : " or more");
+  return fmt::format("  from {}{} initial states that differ in nothing printed\n",
+                     starts < kCountedStarts ? "" : "at least ", starts);
 }
 
 /// The object on this line with the number.

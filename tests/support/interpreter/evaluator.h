@@ -77,7 +77,7 @@ class Evaluator {
   void note(Branches& all, Branch& branch) const;
   void end_all(Branches& all);
   void yield(Branch& branch);
-  void wait_for_turn();
+  void wait_for_turn(bool asks = false);
   Place place() const;
   void restore(const Place& place);
   PlanItem eval(const Datum& form, const ScopePtr& scope);

@@ -67,6 +67,7 @@ struct Evaluator::Branch {
   int protections = 0;          // unwind-protects it is in
   int cleanups = 0;             // clean-up forms it is in
   bool fresh = true;            // it has not waited yet
+  bool asked = false;           // it has waited at a question, on its way to a perform
 
   Order order = Order::kGo;
   Way way;
@@ -199,9 +200,9 @@ void Evaluator::resume(Branch& branch) {
   if (branch.error) std::rethrow_exception(branch.error);
 }
 
-/// The branch that runs is at a perform. Once its form is decided nothing new is begun, except a
-/// branch's first perform and clean-ups.
-void Evaluator::wait_for_turn() {
+/// The branch that runs is at a perform or asks the model. Once its form is decided nothing new is
+/// begun, except a branch's first perform, one behind a question, and clean-ups.
+void Evaluator::wait_for_turn(bool asks) {
   if (running_ == nullptr) return;
   bool may = true;
   bool cleaning = false;
@@ -209,6 +210,8 @@ void Evaluator::wait_for_turn() {
     cleaning = cleaning || at->cleanups > 0;
     if (at->of->decided()) may = cleaning || at->fresh;
   }
+  may = may || running_->asked;
+  running_->asked = may && asks;
   running_->status = may ? Branch::Status::kWaits : Branch::Status::kStands;
   yield(*running_);
 }

@@ -182,7 +182,9 @@ bool Evaluator::acting(const Datum& form, const ScopePtr& scope, PlanItem& out) 
   } else if (head == "a" || head == "an") {
     out = designator(form, scope);
   } else if (head == "holds") {
-    out = true_item(world_.holds(eval(form.items[1], scope).items));
+    const auto fluent = eval(form.items[1], scope).items;
+    wait_for_turn(true);
+    out = true_item(world_.holds(fluent));
   } else {
     return false;
   }

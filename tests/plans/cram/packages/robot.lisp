@@ -7,7 +7,7 @@
             (append right (make-list (- length (length right)))))))
 
 (in-package :roslisp-utilities)
-(defun rosify-underscores-lisp-name (name) (string-downcase name))
+(defun rosify-underscores-lisp-name (name) name)
 
 (in-package :desig)
 (defun next-filtered-designator-solution (designator filter)
@@ -82,7 +82,8 @@
      joint-state-for-arm-config camera-frame bullet-world link-pose occluding-objects
      arms-for-object-type check-arms-for-object object-in-arms object-in-hand object-is-a-robot
      object-type-grasp object-type-subtype object-rotationally-symmetric
-     location-reference-object location-always-reachable)
+     location-reference-object location-always-reachable location-always-stable location-certain
+     location-accessible location-reset object-or-its-reference-in-hand)
   (<- (robot :pr2))
   (<- (arm ?_ :left))
   (<- (arm ?_ :right))
@@ -110,4 +111,13 @@
   (<- (object-rotationally-symmetric ?_) (fail))
   (<- (object-type-subtype ?_ ?_) (fail))
   (<- (location-reference-object ?_ ?_) (fail))
-  (<- (location-always-reachable ?_) (fail)))
+  (<- (location-always-reachable ?_) (fail))
+  (<- (location-always-stable ?_) (fail))
+  (<- (location-certain ?location)
+    (current-designator ?location ?current)
+    (property ?current (:pose ?_)))
+  (<- (location-accessible ?_))
+  (<- (location-reset ?_))
+  (<- (object-or-its-reference-in-hand ?object ?hand)
+    (member ?hand (:left :right))
+    (object-in-hand ?object ?hand)))
