@@ -50,6 +50,29 @@ std::vector<Conjunct> conjuncts_of(const TypedModel& model, TypedFormulaId root,
   return found;
 }
 
+std::vector<Conjunct> meetings_in(const TypedModel& model, const std::vector<Conjunct>& conjuncts) {
+  const auto& core = model.core;
+  const auto is_same = [&](TermId a, TermId b) {
+    const auto &left = model.terms[a], &right = model.terms[b];
+    return a == b || (left.kind == TermKind::kVariable && right.kind == TermKind::kVariable &&
+                      left.variable == right.variable);
+  };
+  std::vector<Conjunct> found;
+  for (const auto& event : conjuncts) {
+    if (event.kind != Conjunct::Kind::kAtom) continue;
+    const auto& happens = model.formulas[event.formula];
+    if (happens.predicate != core.happens) continue;
+    for (const auto& fluent : conjuncts) {
+      if (fluent.kind != Conjunct::Kind::kAtom) continue;
+      const auto& holds = model.formulas[fluent.formula];
+      if (holds.predicate != core.holds_at || !is_same(happens.terms[1], holds.terms[1])) continue;
+      found.push_back(
+          {Conjunct::Kind::kMeeting, event.formula, false, {}, {}, false, fluent.formula});
+    }
+  }
+  return found;
+}
+
 std::vector<VariableId> variables_of(const TypedModel& model, TermId root) {
   std::vector<VariableId> found;
   std::vector<TermId> todo = {root};

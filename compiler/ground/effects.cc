@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "compiler/base/codes/grounding.h"
+#include "compiler/ground/meetings.h"
 #include "compiler/ground/time_profile.h"
 
 namespace parallax::compiler {
@@ -33,7 +34,8 @@ class InertiaWriter {
   InertiaWriter(GroundModel& model, const EffectRows& rows, const GroundOptions& options)
       : model_(model),
         rows_(rows),
-        templates_(options.meaning == Meaning::kStandard && options.templates) {
+        templates_(options.meaning == Meaning::kStandard && options.templates),
+        short_(drops_meetings(model, options)) {
     const auto& symbols = model.typed().symbols;
     // With encoding 3 the 2005 reasoner writes the axioms for inertial fluents, or for all if there
     // are none.
@@ -118,8 +120,9 @@ class InertiaWriter {
   void assert_frame(std::uint32_t f, Timepoint t, bool always) {
     auto& formulas = model_.formulas();
     const auto origin = origin_of(f);
-    const auto initiated = rows_.changed(EffectKind::kInitiates, f, t, model_);
-    const auto terminated = rows_.changed(EffectKind::kTerminates, f, t, model_);
+    const auto changed = [&](EffectKind kind, FormulaId given) {
+      return rows_.changed(kind, f, t, short_ ? given : formulas.truth(), model_);
+    };
     const auto releases = rows_.changed(EffectKind::kReleases, f, t, model_);
     const auto before = model_.holds(f, t);
     const auto after = model_.holds(f, t + 1);
@@ -127,13 +130,18 @@ class InertiaWriter {
     const auto released_after = model_.released(f, t + 1);
     const bool begins = !rows_.is_lost(EffectKind::kInitiates, f, t);
     const bool ends = !rows_.is_lost(EffectKind::kTerminates, f, t);
+    // Beside `before` a trigger need not ask for it again: then it is no part with a name.
     if (ends) {
+      const auto terminated = changed(EffectKind::kTerminates, before);
       require(formulas.disjunction({~before, after, released_after, terminated}), origin, always);
     }
     if (begins) {
+      const auto initiated = changed(EffectKind::kInitiates, ~before);
       require(formulas.disjunction({before, ~after, released_after, initiated}), origin, always);
     }
-    if (begins && ends) {
+    if (begins && ends && released_before != formulas.falsity()) {
+      const auto initiated = changed(EffectKind::kInitiates, formulas.truth());
+      const auto terminated = changed(EffectKind::kTerminates, formulas.truth());
       require(formulas.disjunction({~released_before, released_after, initiated, terminated}),
               origin, always);
     }
@@ -145,6 +153,7 @@ class InertiaWriter {
   GroundModel& model_;
   const EffectRows& rows_;
   bool templates_;
+  bool short_;  // conditions that hold anyway are left out of frame axioms
   bool frames_of_noninertial_ = false;
   std::vector<std::uint32_t> origins_;  // by symbol
 };

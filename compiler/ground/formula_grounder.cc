@@ -16,6 +16,7 @@
 #include "compiler/ground/formula_grounder.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace parallax::compiler {
@@ -185,7 +186,27 @@ std::optional<FormulaId> FormulaGrounder::leaf(const TypedFormula& formula) {
   return model_->formulas().constant(*value);
 }
 
+/// HoldsAt, ReleasedAt and Happens.
+std::optional<FormulaId> FormulaGrounder::timed_atom(const TypedFormula& formula) {
+  const auto what = term(formula.terms[0]);
+  const auto when = what ? term(formula.terms[1]) : std::nullopt;
+  if (!when) return std::nullopt;
+  const std::array arguments = {*what, *when};
+  if (!terms_.arguments_fit(typed_->symbols[formula.predicate], arguments)) return std::nullopt;
+  const auto t = static_cast<Timepoint>(model_->terms()[*when].integer);
+  if (formula.predicate == typed_->core.happens) return occurrence(*what, t);
+  const auto number = model_->fluent_number(*what);
+  if (!number) return std::nullopt;
+  return formula.predicate == typed_->core.holds_at ? model_->holds(*number, t)
+                                                    : model_->released(*number, t);
+}
+
 std::optional<FormulaId> FormulaGrounder::atom(const TypedFormula& formula) {
+  const auto& core = typed_->core;
+  if (formula.predicate == core.holds_at || formula.predicate == core.released_at ||
+      formula.predicate == core.happens) {
+    return timed_atom(formula);
+  }
   std::vector<GroundTermId> arguments;
   for (const auto id : formula.terms) {
     const auto value = term(id);
@@ -194,18 +215,6 @@ std::optional<FormulaId> FormulaGrounder::atom(const TypedFormula& formula) {
   }
   const auto& symbol = typed_->symbols[formula.predicate];
   if (!terms_.arguments_fit(symbol, arguments)) return std::nullopt;
-  const auto& core = typed_->core;
-  const auto& terms = model_->terms();
-  const bool is_holds = formula.predicate == core.holds_at;
-  if (is_holds || formula.predicate == core.released_at) {
-    const auto number = model_->fluent_number(arguments[0]);
-    if (!number) return std::nullopt;
-    const auto t = static_cast<Timepoint>(terms[arguments[1]].integer);
-    return is_holds ? model_->holds(*number, t) : model_->released(*number, t);
-  }
-  if (formula.predicate == core.happens) {
-    return occurrence(arguments[0], static_cast<Timepoint>(terms[arguments[1]].integer));
-  }
   if (formula.predicate == core.initiates) return effect_atom(EffectKind::kInitiates, arguments);
   if (formula.predicate == core.terminates) return effect_atom(EffectKind::kTerminates, arguments);
   if (formula.predicate == core.releases) return effect_atom(EffectKind::kReleases, arguments);

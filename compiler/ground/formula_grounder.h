@@ -71,6 +71,7 @@ class FormulaGrounder {
   };
   std::optional<FormulaId> leaf(const TypedFormula& formula);
   std::optional<FormulaId> atom(const TypedFormula& formula);
+  std::optional<FormulaId> timed_atom(const TypedFormula& formula);
   bool take_part(Frame& frame, std::optional<FormulaId> part) const;
   std::optional<FormulaId> combine(Frame& frame);
   void begin_instances(Frame& frame, TypedFormulaId id);

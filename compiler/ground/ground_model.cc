@@ -20,6 +20,20 @@ std::string row_line(const GroundModel& model, const EffectRow& row, const std::
   return line + '\n';
 }
 
+/// What the formula still asks for where `given` is true, if `given` is one of its conjuncts.
+FormulaId where(FormulaId given, FormulaId formula, FormulaStore& formulas) {
+  if (given == formulas.truth()) return formula;
+  if (formula == given) return formulas.truth();
+  if (formula.negated() || formulas.kind(formula) != FormulaNodeKind::kAnd) return formula;
+  const auto parts = formulas.children(formula);
+  std::vector<FormulaId> rest;
+  for (const auto part : parts) {
+    if (part == ~given) return formulas.falsity();
+    if (part != given) rest.push_back(part);
+  }
+  return rest.size() == parts.size() ? formula : formulas.conjunction(std::move(rest));
+}
+
 }  // namespace
 
 GroundModel::GroundModel(const TypedModel& model, GroundTermStore terms, Universe universe)
@@ -117,6 +131,7 @@ std::optional<FormulaId> GroundModel::find_happens_last(std::uint32_t event) {
 }
 
 FormulaId GroundModel::predicate(GroundTermId term) {
+  if (true_predicates_.contains(term)) return formulas_.truth();
   if (closed_.contains(terms_[term].symbol) && !predicates_.contains(term)) {
     return formulas_.falsity();
   }
@@ -226,10 +241,15 @@ void EffectRows::add(Timepoint t, const EffectRow& row) {
 
 FormulaId EffectRows::changed(EffectKind kind, std::uint32_t fluent, Timepoint t,
                               GroundModel& model) const {
+  return changed(kind, fluent, t, model.formulas().truth(), model);
+}
+
+FormulaId EffectRows::changed(EffectKind kind, std::uint32_t fluent, Timepoint t, FormulaId given,
+                              GroundModel& model) const {
   std::vector<FormulaId> triggers;
   const auto trigger = [&](const EffectRow& row, Timepoint shift) {
     if (row.kind != kind) return;
-    const auto condition = model.shifted(row.condition, shift);
+    const auto condition = where(given, model.shifted(row.condition, shift), model.formulas());
     triggers.push_back(model.formulas().conjunction(model.happens(row.event, t), condition));
   };
   for (const auto number : by_fluent_[fluent]) trigger(always_[number], t);

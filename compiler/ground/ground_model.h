@@ -9,6 +9,7 @@
 #include <string_view>
 #include <tuple>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -89,6 +90,8 @@ class GroundModel {
   bool can_be_released(std::uint32_t fluent) const { return releasable_[fluent]; }
   /// A user predicate over ground arguments, as a ground term.
   FormulaId predicate(GroundTermId term);
+  /// From now on the atom is written as truth. A constraint says that it is true.
+  void note_true_predicate(GroundTermId term) { true_predicates_.insert(term); }
   /// From now on atoms of the predicate that no formula has mentioned yet are false.
   void close_predicate(SymbolId predicate) { closed_.insert(predicate); }
   /// The variable of a user predicate's atom, if some formula has mentioned it.
@@ -141,6 +144,10 @@ class GroundModel {
   const std::vector<GroundObjective>& objectives() const { return objectives_; }
 
   const std::vector<Constraint>& constraints() const { return constraints_; }
+  /// Says the same in another way.
+  void reword(std::size_t constraint, FormulaId formula) {
+    constraints_[constraint].formula = formula;
+  }
   const std::vector<Origin>& origins() const { return origins_; }
 
  private:
@@ -160,6 +167,7 @@ class GroundModel {
   std::unordered_map<std::uint64_t, std::int32_t> timed_;
   std::unordered_map<GroundTermId, std::int32_t> predicates_;
   std::set<SymbolId> closed_;
+  std::unordered_set<GroundTermId> true_predicates_;
   std::map<std::tuple<AtomKind, PlanAtom, Timepoint>, std::int32_t> plan_variables_;
   std::vector<PlanAtom> plan_atoms_;
   std::vector<Constraint> constraints_;
@@ -198,6 +206,12 @@ class EffectRows {
   explicit EffectRows(std::size_t fluent_count) : by_fluent_(fluent_count) {}
   void add_always(const EffectRow& row);
   void add(Timepoint t, const EffectRow& row);
+  /// Takes these rows for those that hold at every timepoint.
+  void replace_always(const std::vector<EffectRow>& rows) {
+    always_.clear();
+    for (auto& numbers : by_fluent_) numbers.clear();
+    for (const auto& row : rows) add_always(row);
+  }
   /// Leaves out the rows that hold at every timepoint for which `keep` is false.
   template <typename Keep>
   void filter_always(const Keep& keep) {
@@ -205,9 +219,7 @@ class EffectRows {
     for (const auto& row : always_) {
       if (keep(row)) kept.push_back(row);
     }
-    always_.clear();
-    for (auto& numbers : by_fluent_) numbers.clear();
-    for (const auto& row : kept) add_always(row);
+    replace_always(kept);
   }
 
   const std::vector<EffectRow>& always() const { return always_; }
@@ -223,6 +235,9 @@ class EffectRows {
 
   /// Does an event change the fluent this way at t?
   FormulaId changed(EffectKind kind, std::uint32_t fluent, Timepoint t, GroundModel& model) const;
+  /// The same, where `given` (an atom, or a negated one) is known to be true.
+  FormulaId changed(EffectKind kind, std::uint32_t fluent, Timepoint t, FormulaId given,
+                    GroundModel& model) const;
   /// The effect predicate as a formula: the disjunction of the conditions.
   FormulaId holds(EffectKind kind, std::uint32_t event, std::uint32_t fluent, Timepoint t,
                   GroundModel& model) const;

@@ -16,11 +16,13 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "compiler/base/codes/grounding.h"
 #include "compiler/formula/formula.h"
+#include "compiler/ground/at_most_one.h"
 #include "compiler/ground/completion.h"
 #include "compiler/ground/effect_constraints.h"
 #include "compiler/ground/effects.h"
@@ -29,6 +31,7 @@
 #include "compiler/ground/formula_grounder.h"
 #include "compiler/ground/ground_model.h"
 #include "compiler/ground/invariants.h"
+#include "compiler/ground/meetings.h"
 #include "compiler/ground/narrative.h"
 #include "compiler/ground/opaque_effects.h"
 #include "compiler/ground/possible_atoms.h"
@@ -84,7 +87,7 @@ class Grounder {
   void rigid_axioms() { assert_axioms(TimeShape::kRigid); }
 
   void predicate_tables() {
-    tabulate_predicates(model_, completion_, possible_);
+    tabulate_predicates(model_, completion_, drops_meetings(model_, options_), possible_);
     bounds_have_changed();
   }
 
@@ -117,6 +120,41 @@ class Grounder {
     bounds_have_changed();
   }
 
+  /// What is left out because of them must not be what they follow from: the axioms that have
+  /// preconditions and exclusions are grounded before.
+  void meetings() {
+    grounder_.use_effects(rows_);
+    for (std::size_t i = 0; i < typed_.axioms.size(); ++i) {
+      if (asserted_[i] || profiles_[i].shape != TimeShape::kUniform) continue;
+      if (!speaks_of_at_most(2, typed_.axioms[i])) continue;
+      asserted_[i] = true;
+      assert_axiom(typed_.axioms[i], profiles_[i]);
+    }
+    if (grounder_.failed()) return;
+    groups_ = at_most_one_groups(model_, rows_);
+    possible_.know_meetings(Meetings(model_, groups_));
+    if (!something_mentions_effects()) {
+      rows_.replace_always(rows_that_meet(rows_, possible_.meetings(), model_));
+    }
+    bounds_have_changed();
+  }
+
+  /// Does the premise have so many atoms of events and fluents?
+  bool speaks_of_at_most(std::size_t count, const Axiom& axiom) const {
+    auto body = axiom.formula;
+    while (typed_.formulas[body].kind == FormulaKind::kForall) {
+      body = typed_.formulas[body].children[0];
+    }
+    for (const auto& conjunct : conjuncts_of(typed_, body, true)) {
+      if (conjunct.kind != Conjunct::Kind::kAtom) continue;
+      const auto predicate = typed_.formulas[conjunct.formula].predicate;
+      if (predicate != typed_.core.happens && predicate != typed_.core.holds_at) continue;
+      if (count == 0) return false;
+      --count;
+    }
+    return true;
+  }
+
   void other_axioms() {
     grounder_.use_effects(rows_);
     assert_axioms(std::nullopt);
@@ -130,8 +168,11 @@ class Grounder {
   void trajectories() { assert_trajectories(model_, rows_, grounder_, sink_); }
   void inertia() { assert_inertia(model_, rows_, options_); }
   void invariants() {
-    add_invariants(model_, rows_);
+    const bool joins = drops_meetings(model_, options_);
+    const auto clique = joins ? options_.least_clique : std::numeric_limits<std::size_t>::max();
+    add_invariants(model_, rows_, groups_, possible_.meetings(), clique);
     add_equal_bits(model_, rows_);
+    if (joins) join_exclusions(model_, clique);
   }
 
   /// In the 2005 reasoner's meaning an atom that stands in no formula is false.
@@ -164,6 +205,7 @@ class Grounder {
   // --- when they apply ---
 
   bool uses_relevance() const { return relevance_; }
+  bool looks_for_meetings() const { return drops_meetings(model_, options_); }
   bool has_trajectories() const { return !typed_.trajectories.empty(); }
   bool looks_for_invariants() const {
     return standard_ && options_.templates && options_.invariants;
@@ -324,6 +366,7 @@ class Grounder {
   EffectGrounder effects_;
   CompletionWriter completion_;
   OpaqueEffects opaque_;
+  std::vector<FluentGroup> groups_;  // known since `meetings`
   bool standard_, relevance_;
   std::vector<TimeProfile> profiles_;  // by axiom
   std::vector<bool> asserted_;         // by axiom
@@ -331,7 +374,7 @@ class Grounder {
 
 std::span<const Pass<Grounder>> Grounder::passes() {
   using G = Grounder;
-  static constexpr std::array<Pass<G>, 12> kPasses = {{
+  static constexpr std::array<Pass<G>, 13> kPasses = {{
       {{"rigid-axioms", "axioms in which no timepoint stands"},
        &G::rigid_axioms,
        &G::text,
@@ -353,6 +396,11 @@ std::span<const Pass<Grounder>> Grounder::passes() {
        &G::reachability,
        &G::text,
        &G::uses_relevance},
+      {{"meetings",
+        "preconditions and exclusions; which fluents cannot hold when an event happens"},
+       &G::meetings,
+       &G::text,
+       &G::looks_for_meetings},
       {{"axioms", "axioms that are left: about every timepoint, or about effects"},
        &G::other_axioms,
        &G::text},

@@ -35,9 +35,14 @@ class Planner {
         model_(model),
         typed_(model.typed()),
         possible_(possible),
-        bound_outside_(bound),
-        used_(conjuncts.size(), false),
-        matched_(conjuncts.size(), false) {}
+        bound_outside_(bound) {
+    if (possible != nullptr && possible->knows_meetings()) {
+      const auto meetings = meetings_in(typed_, conjuncts);
+      conjuncts_.insert(conjuncts_.end(), meetings.begin(), meetings.end());
+    }
+    used_.assign(conjuncts_.size(), false);
+    matched_.assign(conjuncts_.size(), false);
+  }
 
   InstancePlan run() && {
     for (;;) {
@@ -59,12 +64,17 @@ class Planner {
     return std::all_of(all.begin(), all.end(), [&](VariableId v) { return bound(v); });
   }
   bool bound(const Conjunct& conjunct) const {
-    if (conjunct.kind != Conjunct::Kind::kCompare && conjunct.kind != Conjunct::Kind::kAtom) {
+    if (conjunct.kind != Conjunct::Kind::kCompare && conjunct.kind != Conjunct::Kind::kAtom &&
+        conjunct.kind != Conjunct::Kind::kMeeting) {
       return bound(conjunct.term) &&
              (conjunct.kind != Conjunct::Kind::kEvent || bound(conjunct.time));
     }
-    const auto& terms = typed_.formulas[conjunct.formula].terms;
-    return std::all_of(terms.begin(), terms.end(), [&](TermId term) { return bound(term); });
+    const auto bound_in = [&](TypedFormulaId formula) {
+      const auto& terms = typed_.formulas[formula].terms;
+      return std::all_of(terms.begin(), terms.end(), [&](TermId term) { return bound(term); });
+    };
+    return bound_in(conjunct.formula) &&
+           (conjunct.kind != Conjunct::Kind::kMeeting || bound_in(conjunct.other));
   }
   std::vector<VariableId> open_variables() const {
     std::vector<VariableId> open;
@@ -106,8 +116,9 @@ class Planner {
       used_[i] = any = true;
       const bool compares = conjuncts_[i].kind == Conjunct::Kind::kCompare;
       if (!compares && possible_ == nullptr) continue;
+      const bool selects = compares || conjuncts_[i].kind == Conjunct::Kind::kMeeting;
       plan_.steps.push_back(
-          {StepKind::kFilter, conjuncts_[i], {}, {}, {}, compares ? kFilterShare : 1.0});
+          {StepKind::kFilter, conjuncts_[i], {}, {}, {}, selects ? kFilterShare : 1.0});
       plan_.is_product = false;
     }
     return any;
@@ -145,7 +156,7 @@ class Planner {
     const auto& conjunct = conjuncts_[i];
     if (used_[i] || matched_[i] || possible_ == nullptr ||
         conjunct.kind == Conjunct::Kind::kCompare || conjunct.kind == Conjunct::Kind::kFluent ||
-        conjunct.kind == Conjunct::Kind::kTime) {
+        conjunct.kind == Conjunct::Kind::kTime || conjunct.kind == Conjunct::Kind::kMeeting) {
       return std::nullopt;
     }
     TermId pattern = conjunct.term;
@@ -249,7 +260,7 @@ class Planner {
   }
 
   const std::vector<VariableId>& variables_;
-  const std::vector<Conjunct>& conjuncts_;
+  std::vector<Conjunct> conjuncts_;
   const GroundModel& model_;
   const TypedModel& typed_;
   PossibleAtoms* possible_;

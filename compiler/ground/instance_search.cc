@@ -112,6 +112,9 @@ bool InstanceSearch::filter(const Conjunct& conjunct) {
     return value && *value != conjunct.negated;
   }
   if (conjunct.kind == Conjunct::Kind::kAtom) return may_be_true(typed.formulas[conjunct.formula]);
+  if (conjunct.kind == Conjunct::Kind::kMeeting) {
+    return may_meet(typed.formulas[conjunct.formula], typed.formulas[conjunct.other]);
+  }
   const auto term = terms_.term(conjunct.term);
   if (!term) return false;
   auto& model = terms_.model();
@@ -120,6 +123,15 @@ bool InstanceSearch::filter(const Conjunct& conjunct) {
   const auto time = terms_.term(conjunct.time);
   if (!event || !time) return false;
   return possible_->may_happen(*event, static_cast<Timepoint>(model.terms()[*time].integer));
+}
+
+bool InstanceSearch::may_meet(const TypedFormula& happens, const TypedFormula& holds) {
+  const auto event = terms_.term(happens.terms[0]);
+  const auto fluent = terms_.term(holds.terms[0]);
+  if (!event || !fluent) return false;
+  const auto e = terms_.model().event_number(*event);
+  const auto f = terms_.model().fluent_number(*fluent);
+  return e && f && possible_->may_meet(*e, *f);
 }
 
 bool InstanceSearch::may_be_true(const TypedFormula& atom) {

@@ -54,6 +54,7 @@ class InstanceSearch {
   void step(std::size_t number);
   bool filter(const Conjunct& conjunct);
   bool may_be_true(const TypedFormula& atom);
+  bool may_meet(const TypedFormula& happens, const TypedFormula& holds);
   bool match(TermId pattern, GroundTermId value);
   /// Has the term a variable without a value?
   bool is_open(TermId id) const;

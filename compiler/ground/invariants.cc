@@ -22,10 +22,12 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "compiler/formula/formula.h"
+#include "compiler/ground/at_most_one.h"
 #include "compiler/ground/ground_model.h"
 #include "compiler/ground/possible_atoms.h"
 
@@ -40,7 +42,7 @@ using StateFacts = std::map<std::uint32_t, bool>;
 class StepFacts {
  public:
   /// `model` outlives the object. Linear in the constraints' formulas.
-  explicit StepFacts(const GroundModel& model);
+  StepFacts(const GroundModel& model, const Meetings& meetings);
 
   /// Fluents whose values are known when the row's event happens and its condition holds.
   StateFacts of(const EffectRow& row) const;
@@ -54,6 +56,7 @@ class StepFacts {
   void add_literals(FormulaId formula, StateFacts& facts) const;
 
   const GroundModel& model_;
+  const Meetings& meetings_;
   std::map<std::uint32_t, std::vector<FormulaId>> preconditions_;  // by event
   std::set<std::pair<std::uint32_t, std::uint32_t>> exclusive_;    // smaller event first
 };
@@ -67,7 +70,8 @@ std::optional<std::uint32_t> event_of(FormulaId formula, const GroundModel& mode
   return atom.index;
 }
 
-StepFacts::StepFacts(const GroundModel& model) : model_(model) {
+StepFacts::StepFacts(const GroundModel& model, const Meetings& meetings)
+    : model_(model), meetings_(meetings) {
   for (const auto& constraint : model.constraints()) {
     if (constraint.width == 0 || constraint.width == 1) read(constraint.formula);
   }
@@ -116,6 +120,8 @@ StateFacts StepFacts::of(const EffectRow& row) const {
     for (const auto formula : found->second) add_literals(formula, facts);
   }
   add_literals(row.condition, facts);
+  if (meetings_.empty()) return facts;
+  for (const auto fluent : meetings_.absent(row.event)) facts.emplace(fluent, false);
   return facts;
 }
 
@@ -134,7 +140,7 @@ bool StepFacts::implied(FormulaId formula, const StateFacts& facts) const {
   return value == Truth::kTrue;
 }
 
-using Group = std::vector<std::uint32_t>;  // fluents, ascending
+using Group = FluentGroup;
 
 /// The instances of each fluent symbol that differ in one argument, for each of its arguments.
 std::vector<Group> candidates(const GroundModel& model) {
@@ -164,19 +170,37 @@ std::vector<Group> candidates(const GroundModel& model) {
 
 class InvariantFinder {
  public:
-  InvariantFinder(GroundModel& model, const EffectRows& rows)
-      : model_(model), rows_(rows), facts_(model), initial_(initial_values(model)) {
-    for (const auto& row : rows.always()) rows_of_[row.fluent].push_back(&row);
+  InvariantFinder(GroundModel& model, const EffectRows& rows, const Meetings& meetings)
+      : model_(model), rows_(rows), facts_(model, meetings), initial_(initial_values(model)) {
+    for (const auto& row : rows.always()) {
+      rows_of_[row.fluent].push_back(&row);
+      rows_by_event_[key(row.fluent, row.event)].push_back(&row);
+    }
   }
 
-  void run() {
+  /// `known` groups need not be shown again.
+  void run(const std::vector<Group>& known, std::size_t clique) {
+    const std::set<Group> shown(known.begin(), known.end());
     for (const auto& group : candidates(model_)) {
       if (!is_inertial(group)) continue;
       const auto true_at_0 = count_true_at_0(group);
-      if (!true_at_0 || *true_at_0 > 1 || !at_most_one_is_kept(group)) continue;
-      add_at_most_one(group);
+      if (!true_at_0 || *true_at_0 > 1) continue;
+      if (!shown.contains(group) && !at_most_one_is_kept(group)) continue;
+      add_at_most_one(group, clique);
       if (*true_at_0 == 1 && one_is_kept(group)) add_at_least_one(group);
     }
+  }
+
+  std::vector<Group> groups() {
+    std::vector<Group> found;
+    for (auto& group : candidates(model_)) {
+      if (!is_inertial(group)) continue;
+      const auto true_at_0 = count_true_at_0(group);
+      if (true_at_0 && *true_at_0 <= 1 && at_most_one_is_kept(group)) {
+        found.push_back(std::move(group));
+      }
+    }
+    return found;
   }
 
  private:
@@ -229,10 +253,10 @@ class InvariantFinder {
   /// With these facts, does the event do this to the fluent?
   bool changes(EffectKind kind, std::uint32_t event, std::uint32_t fluent,
                const StateFacts& facts) const {
-    const auto found = rows_of_.find(fluent);
-    if (found == rows_of_.end()) return false;
+    const auto found = rows_by_event_.find(key(fluent, event));
+    if (found == rows_by_event_.end()) return false;
     return std::any_of(found->second.begin(), found->second.end(), [&](const EffectRow* row) {
-      return row->kind == kind && row->event == event && facts_.implied(row->condition, facts);
+      return row->kind == kind && facts_.implied(row->condition, facts);
     });
   }
 
@@ -300,14 +324,12 @@ class InvariantFinder {
     return model_.add_origin(model_.fluent_symbol(group[0]).declared, OriginKind::kInvariant);
   }
 
-  void add_at_most_one(const Group& group) {
+  void add_at_most_one(const Group& group, std::size_t clique) {
     const auto origin = origin_of(group);
-    for (std::size_t i = 0; i < group.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        const auto both =
-            model_.formulas().conjunction(model_.holds(group[i], 0), model_.holds(group[j], 0));
-        model_.require_always(~both, origin, 0);
-      }
+    std::vector<FormulaId> members;
+    for (const auto f : group) members.push_back(model_.holds(f, 0));
+    for (const auto pair : at_most_one(members, clique, model_)) {
+      model_.require_always(pair, origin, 0);
     }
   }
 
@@ -317,17 +339,29 @@ class InvariantFinder {
     model_.require_always(model_.formulas().disjunction(members), origin_of(group), 0);
   }
 
+  static std::uint64_t key(std::uint32_t fluent, std::uint32_t event) {
+    return (std::uint64_t{fluent} << 32U) | event;
+  }
+
   GroundModel& model_;
   const EffectRows& rows_;
   StepFacts facts_;
   std::vector<Truth> initial_;                                      // by fluent, at 0
   std::map<std::uint32_t, std::vector<const EffectRow*>> rows_of_;  // by fluent
+  std::unordered_map<std::uint64_t, std::vector<const EffectRow*>> rows_by_event_;  // and fluent
 };
 
 }  // namespace
 
-void add_invariants(GroundModel& model, const EffectRows& rows) {
-  if (model.horizon() > 0) InvariantFinder(model, rows).run();
+void add_invariants(GroundModel& model, const EffectRows& rows,
+                    const std::vector<FluentGroup>& known, const Meetings& meetings,
+                    std::size_t clique) {
+  if (model.horizon() > 0) InvariantFinder(model, rows, meetings).run(known, clique);
+}
+
+std::vector<FluentGroup> at_most_one_groups(GroundModel& model, const EffectRows& rows) {
+  const Meetings nothing;
+  return InvariantFinder(model, rows, nothing).groups();
 }
 
 }  // namespace parallax::compiler

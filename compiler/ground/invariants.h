@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "compiler/ground/ground_model.h"
+#include "compiler/ground/meetings.h"
 
 namespace parallax::compiler {
 
@@ -11,8 +14,14 @@ namespace parallax::compiler {
 /// finds the others false or terminates them, and no two initiations can coincide. Preconditions
 /// and exclusions of events that hold at every timepoint are taken into account. The traces stay
 /// the same. Quadratic in the rows of a group; groups beyond kMaxGroup members or kMaxGroupRows
-/// rows are left alone.
-void add_invariants(GroundModel& model, const EffectRows& rows);
+/// rows are left alone. `known` are groups that at_most_one_groups found; of `clique` members on
+/// they are said by blocks (at_most_one.h).
+void add_invariants(GroundModel& model, const EffectRows& rows,
+                    const std::vector<FluentGroup>& known, const Meetings& meetings,
+                    std::size_t clique);
+
+/// The groups of which at most one holds, as far as the constraints so far show it.
+std::vector<FluentGroup> at_most_one_groups(GroundModel& model, const EffectRows& rows);
 
 inline constexpr std::size_t kMaxGroup = 64;
 inline constexpr std::size_t kMaxGroupRows = 1024;

@@ -45,7 +45,7 @@ class Tabulator {
     }
   }
 
-  void run() {
+  void run(bool fold) {
     values_.assign(model_.atom_count() + 1, Truth::kUnknown);
     while (propagate()) {
     }
@@ -56,9 +56,22 @@ class Tabulator {
         tabulate(symbol);
       }
     }
+    if (fold) fold_true_atoms();
   }
 
  private:
+  /// A completed atom would lose reasons with the formulas that no longer mention it.
+  void fold_true_atoms() {
+    for (std::size_t i = 0; i < model_.atom_count(); ++i) {
+      const auto variable = static_cast<std::int32_t>(i + 1);
+      const auto& atom = model_.atom(variable);
+      if (atom.kind != AtomKind::kPredicate || value(variable) != Truth::kTrue) continue;
+      const auto term = GroundTermId(atom.index);
+      if (completion_.completion_of(model_.terms()[term].symbol) == nullptr) {
+        model_.note_true_predicate(term);
+      }
+    }
+  }
   void note_predicates(TypedFormulaId root) {
     std::vector<TypedFormulaId> todo = {root};
     while (!todo.empty()) {
@@ -407,9 +420,9 @@ void drop_unreachable(GroundModel& model, PossibleAtoms& possible, EffectRows& r
   possible.forget_fluent_tables();
 }
 
-void tabulate_predicates(GroundModel& model, const CompletionWriter& completion,
+void tabulate_predicates(GroundModel& model, const CompletionWriter& completion, bool fold,
                          PossibleAtoms& possible) {
-  Tabulator(model, completion, possible).run();
+  Tabulator(model, completion, possible).run(fold);
 }
 
 }  // namespace parallax::compiler

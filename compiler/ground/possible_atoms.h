@@ -14,6 +14,7 @@
 #include "compiler/formula/formula.h"
 #include "compiler/ground/completion.h"
 #include "compiler/ground/ground_model.h"
+#include "compiler/ground/meetings.h"
 #include "compiler/ground/universe.h"
 
 namespace parallax::compiler {
@@ -82,6 +83,14 @@ class PossibleAtoms {
   bool may_hold(std::uint32_t fluent, std::optional<Timepoint> t) const;
   bool may_happen(std::uint32_t event, std::optional<Timepoint> t) const;
 
+  /// From now on instances in which an event and a fluent meet that cannot are left out.
+  void know_meetings(Meetings meetings) { meetings_ = std::move(meetings); }
+  bool knows_meetings() const { return !meetings_.empty(); }
+  bool may_meet(std::uint32_t event, std::uint32_t fluent) const {
+    return meetings_.may_meet(event, fluent);
+  }
+  const Meetings& meetings() const { return meetings_; }
+
   /// From now on there are tables of effects, at first empty.
   void know_effects();
   /// False: it was there.
@@ -97,6 +106,7 @@ class PossibleAtoms {
   std::map<std::pair<SymbolId, bool>, GroundTable> events_;  // by symbol and whether timed
   std::map<SymbolId, std::unordered_set<std::uint32_t>> true_predicates_;
   std::set<std::tuple<EffectKind, std::uint32_t, std::uint32_t>> effects_;
+  Meetings meetings_;
   std::vector<bool> scheduled_;  // by symbol
   bool all_scheduled_ = false;
   bool timeless_ = false;
@@ -123,7 +133,9 @@ void drop_unreachable(GroundModel& model, PossibleAtoms& possible, EffectRows& r
 /// atom is left out if unit propagation, or the completion of its predicate, makes it false.
 /// A predicate that axioms about time speak of is completed later, and gets no table by completion.
 /// Predicates over more than 200,000 argument tuples get no table.
-void tabulate_predicates(GroundModel& model, const CompletionWriter& completion,
+/// `fold`: from now on atoms that are true in every trace are written as truth, if nothing
+/// completes their predicate.
+void tabulate_predicates(GroundModel& model, const CompletionWriter& completion, bool fold,
                          PossibleAtoms& possible);
 
 }  // namespace parallax::compiler

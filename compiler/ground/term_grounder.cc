@@ -1,11 +1,17 @@
 #include "compiler/ground/term_grounder.h"
 
+#include <array>
 #include <limits>
 #include <utility>
 
 #include "compiler/base/codes/grounding.h"
 
 namespace parallax::compiler {
+namespace {
+
+constexpr std::size_t kFewArguments = 6;
+
+}  // namespace
 
 TermGrounder::TermGrounder(GroundModel& model, const GroundOptions& options,
                            base::DiagnosticSink& sink)
@@ -75,10 +81,36 @@ bool TermGrounder::arguments_fit(const Symbol& symbol,
   return true;
 }
 
+/// The value of a symbol over variables, integers and constants, which is what most terms are; no
+/// value at all for other terms.
+std::optional<std::optional<GroundTermId>> TermGrounder::flat_term(const Term& node) {
+  std::array<GroundTermId, kFewArguments> values{};
+  for (std::size_t i = 0; i < node.arguments.size(); ++i) {
+    const auto& argument = typed_->terms[node.arguments[i]];
+    std::optional<GroundTermId> value;
+    if (argument.kind == TermKind::kVariable) {
+      value = environment_[argument.variable.index()];
+    } else if (argument.kind == TermKind::kInteger) {
+      value = model_->terms().integer(argument.integer);
+    } else if (argument.kind == TermKind::kObject) {
+      value = model_->terms().object(argument.object);
+    } else {
+      return std::nullopt;
+    }
+    if (!value) return std::optional<GroundTermId>();
+    values[i] = *value;
+  }
+  return apply(node, std::span(values).first(node.arguments.size()));
+}
+
 std::optional<GroundTermId> TermGrounder::term(TermId root) {
   const auto& top = typed_->terms[root];
   if (top.kind == TermKind::kVariable) return environment_[top.variable.index()];
   if (top.kind == TermKind::kInteger) return model_->terms().integer(top.integer);
+  if (top.kind == TermKind::kObject) return model_->terms().object(top.object);
+  if (top.kind == TermKind::kApply && top.arguments.size() <= kFewArguments) {
+    if (const auto value = flat_term(top)) return *value;
+  }
   // Post-order without recursion: (term, how many of its arguments are done).
   std::vector<std::pair<TermId, std::size_t>> stack = {{root, 0}};
   std::vector<GroundTermId> values;

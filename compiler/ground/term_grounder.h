@@ -46,6 +46,7 @@ class TermGrounder {
   GroundModel& model() const { return *model_; }
 
  private:
+  std::optional<std::optional<GroundTermId>> flat_term(const Term& term);
   std::optional<GroundTermId> arithmetic(const Term& term, GroundTermId left, GroundTermId right);
   std::optional<GroundTermId> apply(const Term& term, std::span<const GroundTermId> arguments);
   void read_function_values();

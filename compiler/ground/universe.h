@@ -73,6 +73,12 @@ struct GroundOptions {
   std::size_t keep_unreachable = 100'000;
   /// Add constraints that follow by induction (compiler/ground/invariants.h); needs `templates`.
   bool invariants = true;
+  /// Up to this many pairs of an event and a fluent every instance stays in the model, and
+  /// exclusions are pairs (meetings.h); with more, least_clique counts. Needs `relevance` and
+  /// `invariants`.
+  std::size_t keep_meetings = 30'000;
+  /// With this many atoms or more, that at most one is true is said by blocks (at_most_one.h).
+  std::size_t least_clique = 9;
   bool lint = false;  // also report completed atoms that are reasons of each other
 };
 

@@ -17,7 +17,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <utility>
@@ -36,6 +38,8 @@ using compiler::Literal;
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t kWrittenAtOnce = std::size_t{1} << 16U;
 
 /// The clauses that end with the trace hold at timepoint t, 1 .. horizon; numbered as a session
 /// does.
@@ -315,14 +319,23 @@ void CompletenessClaim::write_dimacs(std::ostream& out) const {
                        compiler::to_string(observable.kind), observable.name, observable.time);
   }
   out << fmt::format("p cnf {} {}\n", variables_, clauses);
-  std::string line;
+  std::string text;
+  const auto write = [&] {
+    if (out) out << text;
+    text.clear();
+  };
   for_each_clause([&](std::span<const Literal> clause) {
-    line.clear();
-    for (const auto literal : clause)
-      fmt::format_to(std::back_inserter(line), "{} ", literal.dimacs());
-    line += "0\n";
-    if (out) out << line;
+    for (const auto literal : clause) {
+      std::array<char, 16> digits{};
+      const auto [end, error] =
+          std::to_chars(digits.data(), digits.data() + digits.size(), literal.dimacs());
+      text.append(digits.data(), end);
+      text += ' ';
+    }
+    text += "0\n";
+    if (text.size() > kWrittenAtOnce) write();
   });
+  write();
 }
 
 base::Result<ProofFiles> ProofFiles::create(const fs::path& proof, base::DiagnosticSink& sink) {

@@ -10,6 +10,10 @@
 // the same key. After the last length one call asks whether some execution goes on beyond the
 // horizon.
 //
+// Where the whole model is loaded from the start, as for a proof, and any order will do, one call
+// after the first length asks for all others at once: what contradicts one length mostly
+// contradicts its neighbours, and a property that holds is proved by one search instead of many.
+//
 // Cost: per trace one search for the canonical valuation and a few calls; blocking clauses add
 // up within a length.
 
@@ -100,6 +104,21 @@ std::optional<Literal> PlanEnumerator::breaking() {
   session_->load(n_);
   breaker_->extend(static_cast<std::size_t>(n_) + 1);
   return breaker_->assumption();
+}
+
+/// Where the first length has no trace and the whole model is loaded anyway, as for a proof that
+/// there is none. A plan's clauses end with the trace, so lengths do not share them.
+bool PlanEnumerator::asks_all_lengths() const {
+  const auto& model = session_->model();
+  return n_ == first_ && n_ < model.horizon && session_->loaded() == model.horizon &&
+         options_.order == TraceOrder::kAny && !breaker_ && !has_ending_clauses(model);
+}
+
+/// One call for all lengths beyond n.
+bool PlanEnumerator::may_hit_after(Timepoint n) {
+  std::map<Timepoint, Literal> hits;
+  for (Timepoint t = n + 1; t <= session_->model().horizon; ++t) hits.emplace(t, *index_.hit(t));
+  return session_->solve_some_length(hits) != SolveStatus::kUnsatisfiable;
 }
 
 void PlanEnumerator::note_refuted(std::optional<Literal> breaking) {
@@ -216,6 +235,7 @@ std::optional<Trace> PlanEnumerator::next() {
       session_->add_clause(std::span(&retired, 1));
       guard_.reset();
       if (!note_cuts(n_)) return std::nullopt;
+      if (asks_all_lengths() && !may_hit_after(n_)) n_ = session_->model().horizon;
       continue;
     }
     const auto head = assumptions.size();

@@ -107,6 +107,8 @@ class PlanEnumerator {
 
  private:
   std::optional<Literal> breaking();
+  bool asks_all_lengths() const;
+  bool may_hit_after(Timepoint n);
   void note_refuted(std::optional<Literal> breaking);
   base::Known has_alternative(Timepoint n, std::span<const Literal> fixed,
                               std::span<const Literal> different);

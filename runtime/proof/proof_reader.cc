@@ -36,6 +36,21 @@ bool DimacsReader::next_word(std::string& word) {
   return true;
 }
 
+/// The next word, if it is a literal and not the last word of its line; else nothing is read.
+std::optional<std::int64_t> DimacsReader::plain_literal() {
+  const auto* end = line_.data() + line_.size();
+  const auto* begin = line_.data() + std::min(position_, line_.size());
+  if (begin != end && *begin == ' ') ++begin;
+  std::int64_t literal = 0;
+  const auto [stop, error] = std::from_chars(begin, end, literal);
+  if (error != std::errc() || stop == end || *stop != ' ' || literal == 0 ||
+      literal < -variables_ || literal > variables_) {
+    return std::nullopt;
+  }
+  position_ = static_cast<std::size_t>(stop - line_.data()) + 1;
+  return literal;
+}
+
 bool DimacsReader::number(const std::string& word, std::int64_t lower, std::int64_t upper,
                           std::int64_t& value) {
   const auto* end = word.data() + word.size();
@@ -60,7 +75,9 @@ DimacsReader::Outcome DimacsReader::next(std::vector<std::int64_t>& clause) {
   clause.clear();
   std::string word;
   while (true) {
-    while (!next_word(word)) {
+    // Nearly every word is a literal with a blank behind it.
+    while (const auto literal = plain_literal()) clause.push_back(*literal);
+    if (!next_word(word)) {
       if (next_line()) continue;
       if (clause.empty() && found_ == promised_) return Outcome::kEnd;
       fail("the file ends after " + std::to_string(found_) + " of " + std::to_string(promised_) +

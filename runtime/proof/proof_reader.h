@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <istream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ class DimacsReader {
 
  private:
   bool next_line();
+  std::optional<std::int64_t> plain_literal();
   bool next_word(std::string& word);
   bool number(const std::string& word, std::int64_t lower, std::int64_t upper, std::int64_t& value);
   bool fail(std::string problem);

@@ -15,6 +15,7 @@
 #include "runtime/session/solver_session.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace parallax::runtime {
@@ -168,6 +169,27 @@ SolveStatus SolverSession::solve_whole(Timepoint n, std::span<const Literal> ass
   if (status != SolveStatus::kSatisfiable) return status;
   limit_ = limit;
   return solve(model_->horizon, n, assumptions);
+}
+
+/// The new variable is defined as "one of the literals is true", so that a proof may log it. A
+/// length whose literal is true has to be reached, and with it all shorter ones.
+SolveStatus SolverSession::solve_some_length(const std::map<Timepoint, Literal>& ends) {
+  PARALLAX_REQUIRE(loading_ != Loading::kWitness, "without guards there is one horizon");
+  load(model_->horizon);
+  const auto some = new_variable();
+  std::vector<Literal> any = {~some};
+  for (Timepoint t = 2; t <= model_->horizon; ++t) {
+    add_clause(std::array{~lengths_.reaches(t), lengths_.reaches(t - 1)});
+  }
+  for (const auto& [t, literal] : ends) {
+    add_clause(std::array{some, ~literal});
+    add_clause(std::array{~some, ~literal, lengths_.reaches(t)});
+    any.push_back(literal);
+  }
+  add_clause(any);
+  solver_->assume(in_solver(some));
+  if (limit_) solver_->limit_conflicts(*std::exchange(limit_, std::nullopt));
+  return solver_->solve();
 }
 
 void SolverSession::require_model(Timepoint n) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -75,6 +76,10 @@ class SolverSession {
   /// valuation may exist: the first, which only needs the clauses up to `n`, refutes most of what
   /// can be refuted.
   SolveStatus solve_whole(Timepoint n, std::span<const Literal> assumptions);
+  /// Is there a valuation of one of these lengths, at least 1, in which the length's literal is
+  /// true? One call: what contradicts one length mostly contradicts the others. Hands over all
+  /// clauses and keeps no values. Call once, after another call.
+  SolveStatus solve_some_length(const std::map<Timepoint, Literal>& ends);
   /// Limits each solver call of the next `solve` or `solve_whole`, which then answers kUnknown.
   void limit_conflicts(std::int64_t most) { limit_ = most; }
   /// Value of a literal in the valuation that the last satisfiable call found; it stays available

@@ -7,6 +7,7 @@
 
 #include "tests/fuzz/differential.h"
 #include "tests/fuzz/oracles.h"
+#include "tests/fuzz/random_bodies.h"
 #include "tests/support/deep.h"
 #include "tools/cli/command_line.h"
 
@@ -23,6 +24,7 @@ struct FuzzOptions {
   bool compat = false;
   bool effect_constraints = false;
   bool exclusions = false;
+  bool bodies = false;
   bool print = false;
   bool no_shrink = false;
 };
@@ -140,8 +142,10 @@ int fuzz(const FuzzOptions& options) {
   for (std::uint64_t i = 0; i < options.count; ++i) {
     const auto seed = options.seed + i;
     const bool large = is_large(options, seed);
-    const auto model = random_model(seed, large ? kSolverSize : kBruteForceSize,
-                                    options.effect_constraints, options.exclusions);
+    const auto model = options.bodies
+                           ? random_bodies(seed)
+                           : random_model(seed, large ? kSolverSize : kBruteForceSize,
+                                          options.effect_constraints, options.exclusions);
     if (options.print) {
       fmt::print("{}", model.print());
       continue;
@@ -181,6 +185,8 @@ int run(int argc, char** argv) {
              "Add effect axioms whose conditions mention effects to every model");
   table.flag("--exclusions", options.exclusions,
              "Add events of unequal numbers of arguments and a mutex or xor over them");
+  table.flag("--bodies", options.bodies,
+             "Models of bodies that go from place to place, with preconditions and collisions");
   table.flag("--print", options.print, "Print the models instead of comparing");
   table.flag("--no-shrink", options.no_shrink, "Print differing models as they are");
   const auto line = tools::parse_and_print({table, "", false, {}}, argc, argv);

@@ -64,7 +64,7 @@ std::set<std::size_t> FuzzCompilation::error_lines() const {
 }
 
 std::vector<GroundVariant> ground_variants() {
-  std::vector<GroundVariant> variants(5);
+  std::vector<GroundVariant> variants(6);
   variants[0].name = "default";
   variants[1].name = "without templates";
   variants[1].options.templates = false;
@@ -75,6 +75,9 @@ std::vector<GroundVariant> ground_variants() {
   variants[3].options.relevance = false;
   variants[4].name = "without unreachable fluents";
   variants[4].options.keep_unreachable = 0;
+  variants[5].name = "without what never meets";
+  variants[5].options.keep_meetings = 0;
+  variants[5].options.least_clique = 3;
   return variants;
 }
 

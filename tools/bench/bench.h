@@ -91,6 +91,7 @@ void measure_monitor(Bench& bench);
 void measure_starts(Bench& bench);
 void measure_build(Bench& bench);
 void measure_repair(Bench& bench);
+void measure_rival(Bench& bench);
 
 /// A model file, and a plan with its binding table or none.
 struct StagesInput {

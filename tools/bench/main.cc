@@ -40,6 +40,7 @@ const std::vector<Section>& sections() {
       {"demo", "the demo", measure_demo},
       {"build", "building the program; measured only if it is named", measure_build, true},
       {"repair", "mistakes put into models; measured only if it is named", measure_repair, true},
+      {"rival", "planning beside clingo; measured only if it is named", measure_rival, true},
   };
   return all;
 }

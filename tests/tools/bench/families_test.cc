@@ -66,6 +66,30 @@ TEST_CASE("robots: the courses of the sizes that are measured") {
   CHECK(robot_courses(6, 4, -1) == 0);
 }
 
+TEST_CASE("many bodies: as many traces as courses") {
+  CHECK(traces_of("hanoi_2_3") == hanoi_courses(2, 3));
+  CHECK(hanoi_courses(2, 2) == 0);
+  CHECK(hanoi_courses(2, 3) == 1);
+  CHECK(traces_of("hanoi_2_5") == hanoi_courses(2, 5));
+  CHECK(traces_of("hanoi_3_7") == 1);
+  CHECK(traces_of("grid_2_1_3") == grid_courses(2, 1, 3));
+  CHECK(traces_of("grid_2_3_2") == grid_courses(2, 3, 2));
+  CHECK(traces_of("grid_3_2_4") == grid_courses(3, 2, 4));
+  CHECK(grid_courses(3, 2, 4) > 1);
+  CHECK(traces_of("logistics_1_1_2_4") == logistics_courses(1, 1, 2, 4));
+  CHECK(traces_of("logistics_2_2_2_4") == logistics_courses(2, 2, 2, 4));
+  CHECK(traces_of("logistics_2_1_3_6") == logistics_courses(2, 1, 3, 6));
+  CHECK(logistics_courses(2, 2, 2, 4) > 1);
+}
+
+TEST_CASE("a task is the world, the goal as a formula, and both as a model") {
+  const auto task = tools::family_task("hanoi_2_3").value();
+  CHECK(task.goal == "HoldsAt(On(1,Right),time) & HoldsAt(On(2,Right),time)");
+  CHECK(task.model.starts_with(task.world));
+  CHECK(task.model == tools::family_model("hanoi_2_3"));
+  CHECK_FALSE(tools::family_task("lamps_2_3"));
+}
+
 TEST_CASE("banks: told transfers have one outcome, open ones as many as there are series") {
   CHECK(traces_of("bankproj_2_10_3_8") == 1);
   CHECK(traces_of("bankproj_3_12_3_8") == 1);
@@ -103,10 +127,26 @@ TEST_CASE("falling things: one trace, on the ground one step before the end") {
 }
 
 TEST_CASE("names that are no family, or sizes out of range, have no model") {
-  for (const auto* name : {"", "robot", "robot_4_2", "robot_4_2_8_1", "robot_4_m2_8", "robot_1_2_0",
-                           "robot_4_2_x", "robot_2_1_m9", "lamps_0_3", "lamps_3_-1", "lamps_3_",
-                           "bankproj_5_4_1_3", "falling_2", "distant_3_2", "roaming_1_2_3",
-                           "robot_1000000_1000000_0", "lamps_99999999999_1", "zoo_3"}) {
+  for (const auto* name : {"",
+                           "robot",
+                           "robot_4_2",
+                           "robot_4_2_8_1",
+                           "robot_4_m2_8",
+                           "robot_1_2_0",
+                           "robot_4_2_x",
+                           "robot_2_1_m9",
+                           "lamps_0_3",
+                           "lamps_3_-1",
+                           "lamps_3_",
+                           "bankproj_5_4_1_3",
+                           "falling_2",
+                           "distant_3_2",
+                           "roaming_1_2_3",
+                           "robot_1000000_1000000_0",
+                           "lamps_99999999999_1",
+                           "zoo_3",
+                           "grid_2_5_3",
+                           "logistics_2_1_1_4"}) {
     CHECK_MESSAGE(!tools::family_model(name), name);
   }
 }

@@ -1,5 +1,6 @@
 #include "tests/tools/bench/path_count.h"
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <vector>
@@ -100,6 +101,113 @@ std::int64_t transfer_series(int accounts, int max_balance, int max_amount, int 
       start, horizon,
       [&](const State& balances) { return transfers(balances, max_balance, max_amount); },
       [&](const State& balances) { return balances[0] == max_balance; });
+}
+
+namespace {
+
+/// Pegs of the discs, the smallest first.
+std::vector<State> hanoi_moves(const State& pegs) {
+  std::vector<State> next = {pegs};
+  for (std::size_t disc = 0; disc < pegs.size(); ++disc) {
+    for (int peg = 0; peg < 3; ++peg) {
+      bool free = peg != pegs[disc];
+      for (std::size_t smaller = 0; smaller < disc; ++smaller) {
+        free = free && pegs[smaller] != peg && pegs[smaller] != pegs[disc];
+      }
+      if (!free) continue;
+      next.push_back(pegs);
+      next.back()[disc] = peg;
+    }
+  }
+  return next;
+}
+
+/// Cells of the robots, counted from 0. Every combination of single moves in which no two meet.
+std::vector<State> grid_moves(const State& cells, int width) {
+  std::vector<State> next = {{}};
+  for (std::size_t robot = 0; robot < cells.size(); ++robot) {
+    std::vector<State> longer;
+    for (const auto& part : next) {
+      const int x = cells[robot] % width, y = cells[robot] / width;
+      for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+        if (x + dx < 0 || x + dx >= width || y + dy < 0 || y + dy >= width) continue;
+        const int cell = (y + dy) * width + x + dx;
+        bool free = true;
+        for (std::size_t other = 0; other < robot; ++other) {
+          const bool swaps = part[other] == cells[robot] && cells[other] == cell;
+          free = free && part[other] != cell && !swaps;
+        }
+        if (!free) continue;
+        longer.push_back(part);
+        longer.back().push_back(cell);
+      }
+    }
+    next = std::move(longer);
+  }
+  return next;
+}
+
+/// Places of the packages (-1 - truck for one in a truck), then of the trucks.
+std::vector<State> logistics_moves(const State& state, int packages, int trucks, int places) {
+  std::vector<State> next = {state};
+  for (int truck = 0; truck < trucks; ++truck) {
+    const auto at = static_cast<std::size_t>(packages + truck);
+    std::vector<State> after;
+    for (const auto& part : next) {
+      after.push_back(part);
+      for (int place = 0; place < places; ++place) {
+        if (place == state[at]) continue;
+        after.push_back(part);
+        after.back()[at] = place;
+      }
+      int load = -1;
+      for (int package = 0; package < packages; ++package) {
+        if (state[static_cast<std::size_t>(package)] == -1 - truck) load = package;
+      }
+      for (int package = 0; package < packages; ++package) {
+        const auto p = static_cast<std::size_t>(package);
+        // Another truck may have taken it in this step.
+        const bool takes = load < 0 && state[p] == state[at] && part[p] == state[p];
+        if (!takes && package != load) continue;
+        after.push_back(part);
+        after.back()[p] = takes ? -1 - truck : state[at];
+      }
+    }
+    next = std::move(after);
+  }
+  return next;
+}
+
+}  // namespace
+
+std::int64_t hanoi_courses(int discs, int horizon) {
+  const State start(static_cast<std::size_t>(discs), 0), goal(start.size(), 2);
+  return paths(start, horizon, hanoi_moves, [&](const State& state) { return state == goal; });
+}
+
+std::int64_t grid_courses(int width, int robots, int horizon) {
+  State start, goal;
+  for (int robot = 0; robot < robots; ++robot) {
+    start.push_back(robot * width * width / robots);
+    goal.push_back(width * width - 1 - start.back());
+  }
+  return paths(
+      start, horizon, [&](const State& state) { return grid_moves(state, width); },
+      [&](const State& state) { return state == goal; });
+}
+
+std::int64_t logistics_courses(int packages, int trucks, int places, int horizon) {
+  State start;
+  std::vector<int> goal;
+  for (int package = 0; package < packages; ++package) {
+    start.push_back(package % places);
+    goal.push_back((package % places + 1 + package / places) % places);
+  }
+  start.insert(start.end(), static_cast<std::size_t>(trucks), 0);
+  return paths(
+      start, horizon,
+      [&](const State& state) { return logistics_moves(state, packages, trucks, places); },
+      [&](const State& state) { return std::equal(goal.begin(), goal.end(), state.begin()); });
 }
 
 }  // namespace parallax::test

@@ -45,6 +45,9 @@ TEST_CASE("programs by hand: as many answer sets as the models have traces") {
   CHECK(answer_sets("bankplan_3_6_2_3") == std::to_string(transfer_series(3, 6, 2, 3)));
   CHECK(answer_sets("robot_3_2_1") == std::to_string(robot_courses(3, 2, 1)));
   CHECK(answer_sets("robot_4_2_m1") == "0");
+  CHECK(answer_sets("hanoi_2_5") == std::to_string(hanoi_courses(2, 5)));
+  CHECK(answer_sets("grid_3_2_4") == std::to_string(grid_courses(3, 2, 4)));
+  CHECK(answer_sets("logistics_2_2_2_4") == std::to_string(logistics_courses(2, 2, 2, 4)));
   CHECK(answer_sets("roaming_3_2_3") == std::to_string(roaming_courses(3, 2, 3)));
 }
 

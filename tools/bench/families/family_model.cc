@@ -18,6 +18,7 @@ struct Family {
   bool (*fits)(const Parameters&) = nullptr;
   std::string (*model)(const Parameters&) = nullptr;
   std::string (*program)(const Parameters&) = nullptr;
+  Task (*task)(const Parameters&) = nullptr;  // if it has a goal that can be left out
 };
 
 using P = const Parameters&;
@@ -33,6 +34,9 @@ bool has_steps(P p) {
   const std::int64_t horizon = p[1] * (std::int64_t{p[0]} + 1) + p[2];
   return p[0] >= 2 && horizon >= 1 && horizon <= kMaxFamilyParameter;
 }
+
+/// One for each robot.
+bool has_cells(P p) { return p[0] <= 1000 && p[1] <= p[0] * p[0]; }
 
 const Family kFamilies[] = {
     {"lamps", 2, 0, any, [](P p) { return lamps_model(p[0], p[1]); },
@@ -56,6 +60,15 @@ const Family kFamilies[] = {
      [](P p) { return tuned_bank_planning(bank(p)); }},
     {"falling", 1, 0, [](P p) { return p[0] >= 3; }, [](P p) { return falling_model(p[0]); },
      [](P p) { return tuned_falling(p[0]); }},
+    {"grid", 3, 0, has_cells, [](P p) { return grid_task(p[0], p[1], p[2]).model; },
+     [](P p) { return tuned_grid(p[0], p[1], p[2]); },
+     [](P p) { return grid_task(p[0], p[1], p[2]); }},
+    {"hanoi", 2, 0, any, [](P p) { return hanoi_task(p[0], p[1]).model; },
+     [](P p) { return tuned_hanoi(p[0], p[1]); }, [](P p) { return hanoi_task(p[0], p[1]); }},
+    {"logistics", 4, 0, [](P p) { return p[2] >= 2; },
+     [](P p) { return logistics_task(p[0], p[1], p[2], p[3]).model; },
+     [](P p) { return tuned_logistics(p[0], p[1], p[2], p[3]); },
+     [](P p) { return logistics_task(p[0], p[1], p[2], p[3]); }},
 };
 
 /// `7`, or `m1` for -1 (a name that is also a file name).
@@ -108,6 +121,12 @@ std::optional<std::string> family_program(std::string_view name) {
   const auto found = parsed(name);
   if (!found) return std::nullopt;
   return found->first->program(found->second);
+}
+
+std::optional<Task> family_task(std::string_view name) {
+  const auto found = parsed(name);
+  if (!found || found->first->task == nullptr) return std::nullopt;
+  return found->first->task(found->second);
 }
 
 }  // namespace parallax::tools

@@ -32,5 +32,8 @@ std::string tuned_chain(int stages);
 std::string tuned_bank_projection(const BankSize& size);
 std::string tuned_bank_planning(const BankSize& size);
 std::string tuned_falling(int horizon);
+std::string tuned_grid(int width, int robots, int horizon);
+std::string tuned_hanoi(int discs, int horizon);
+std::string tuned_logistics(int packages, int trucks, int places, int horizon);
 
 }  // namespace parallax::tools
