@@ -20,6 +20,7 @@ class JsonSchema {
   std::vector<std::string> errors(const nlohmann::json& document);
   /// Keys of the schema that no valid document had so far.
   std::vector<std::string> unseen() const;
+  const std::set<std::string>& seen() const { return seen_; }
 
  private:
   struct Judgement {

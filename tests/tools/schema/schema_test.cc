@@ -124,14 +124,27 @@ TEST_CASE("what commands print is what their schemas say, and they say nothing e
     }
   }
   std::size_t unseen = 0;
+  std::set<std::string> shared;  // keys of definitions that several schemas have
   for (const auto& [name, schema] : schemas) {
     if (name.ends_with(".yaml")) continue;  // files that are read (yaml_schema_test)
     CAPTURE(name);
     CHECK(seen[name] > 0);
     for (const auto& key : schema.unseen()) {
+      if (key.starts_with("#/$defs/")) {
+        shared.insert(key);
+        continue;
+      }
       std::cout << "no document of this test has " << name << ' ' << key << '\n';
       ++unseen;
     }
+  }
+  for (const auto& [name, schema] : schemas) {
+    for (const auto& key : schema.seen()) shared.erase(key);
+  }
+  for (const auto& key : shared) {
+    if (key.starts_with("#/$defs/yaml_")) continue;
+    std::cout << "no document of this test has " << key << '\n';
+    ++unseen;
   }
   std::cout << unseen << " keys of schemas were not seen\n";
 }
