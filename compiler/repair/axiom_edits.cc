@@ -26,8 +26,25 @@ class AxiomEdits {
     } else {
       drop(i, 3);
       edit_conditions(i);
-      if (subject_.forms[i].kind == AxiomForm::Kind::kTrigger) narrow(i);
+      if (subject_.forms[i].kind != AxiomForm::Kind::kTrigger) return;
+      narrow(i);
+      add_other_demands(subject_, i, out_);
     }
+  }
+
+  /// What follows from an effect of whatever event: relevant if one of its fluents differed.
+  void edit_ramification(std::size_t i) {
+    const auto& form = subject_.forms[i];
+    bool relevant = false;
+    for (const auto effect : form.effects) {
+      const bool own = differs(form, effect);
+      relevant = relevant || own;
+      replace_effect(i, effect, own);
+    }
+    if (!relevant) return;
+    drop(i, kDropSuperfluous);
+    edit_conditions(i);
+    if (!subject_.scope.wide) narrow(i);
   }
 
   /// The effects of another event that fit what differed become those of an event in the scope.
@@ -120,18 +137,22 @@ class AxiomEdits {
     const auto& form = subject_.forms[i];
     bool relevant = false, superfluous = true;
     for (const auto effect : form.effects) {
-      const auto parts = effect_parts(ast(form), effect);
-      const auto& fluent = ast(form)[parts->fluent];
-      const bool named = fluent.kind == NodeKind::kApply;
-      const bool differs = !named || subject_.fluents.contains(std::string(ast(form).name(fluent)));
-      relevant = relevant || differs;
+      const bool own = differs(form, effect);
+      relevant = relevant || own;
       superfluous = superfluous && !came_reversed(form, effect);
-      replace_effect(i, effect, differs);
+      replace_effect(i, effect, own);
     }
     if (!relevant) return;
     drop(i, superfluous ? kDropSuperfluous : 3);
     edit_conditions(i);
     narrow(i);
+  }
+
+  /// Is the effect about a fluent that differed? A variable stands for all of them.
+  bool differs(const AxiomForm& form, NodeId effect) const {
+    const auto& fluent = ast(form)[effect_parts(ast(form), effect)->fluent];
+    return fluent.kind != NodeKind::kApply ||
+           subject_.fluents.contains(std::string(ast(form).name(fluent)));
   }
 
   /// Did the fluent change against the effect's sign with the event in some run? If it never did,
@@ -164,11 +185,14 @@ class AxiomEdits {
     const auto variables = sorted(form.variables, form.time);
     const auto arguments = event_arguments(form);
     for (const auto& literal : condition_literals(subject_.typed, variables, kMostLiterals)) {
-      if (!subject_.relevance.in_some_step(literal, false, arguments, form.event_symbol,
-                                           form.variables) ||
-          (form.kind == AxiomForm::Kind::kEffects &&
-           is_idle_condition(subject_.model, subject_.forms, form,
-                             print(literal, form.time, form.variables)))) {
+      const bool of_any = form.kind == AxiomForm::Kind::kRamification;
+      const bool could_fail =
+          of_any ? subject_.relevance.around_some_step(literal, false, false)
+                 : subject_.relevance.in_some_step(literal, false, arguments, form.event_symbol,
+                                                   form.variables);
+      if (!could_fail || (form.kind == AxiomForm::Kind::kEffects &&
+                          is_idle_condition(subject_.model, subject_.forms, form,
+                                            print(literal, form.time, form.variables)))) {
         continue;
       }
       Edit edit;
@@ -177,6 +201,8 @@ class AxiomEdits {
       edit.literal = literal;
       edit.event = form.event_symbol;
       edit.oddity = 2 + subject_.relevance.oddity(literal, form.event_symbol);
+      if (form.kind == AxiomForm::Kind::kTrigger && is_undone(subject_, form, literal))
+        --edit.oddity;
       out_.push_back(std::move(edit));
     }
   }
@@ -188,6 +214,10 @@ class AxiomEdits {
       const bool is_event =
           node.kind == NodeKind::kApply && ast(form).name(node) == std::string_view("Happens");
       if (is_event) continue;
+      if (form.kind == AxiomForm::Kind::kRamification && effect_parts(ast(form), conjunct)) {
+        other_reasons(i, conjunct);
+        continue;
+      }
       Edit edit;
       edit.kind = Edit::Kind::kDropCondition;
       edit.axioms = {i};
@@ -223,6 +253,26 @@ class AxiomEdits {
           replace(i, conjunct, instead, other.oddity, std::move(literal));
         }
       }
+    }
+  }
+
+  /// The effect from which another one follows has the other sign, or another argument.
+  void other_reasons(std::size_t i, NodeId reason) {
+    const auto& form = subject_.forms[i];
+    const auto& tree = ast(form);
+    const auto parts = *effect_parts(tree, reason);
+    const std::string kind(tree.name(tree[reason]));
+    const auto atom = [&](const std::string& name, const std::string& fluent) {
+      return name + "(" + print_formula(tree, parts.event) + "," + fluent + "," + form.time + ")";
+    };
+    if (kind != "Releases") {
+      replace(
+          i, reason,
+          atom(kind == "Initiates" ? "Terminates" : "Initiates", print_formula(tree, parts.fluent)),
+          2);
+    }
+    for (const auto& other : other_terms(form, parts.fluent)) {
+      replace(i, reason, atom(kind, other.text()), other.oddity + 1);
     }
   }
 
@@ -474,6 +524,7 @@ class AxiomEdits {
 void add_axiom_edits(const EditSubject& subject, std::vector<Edit>& edits) {
   AxiomEdits maker(subject, edits);
   for (std::size_t i = 0; i < subject.forms.size(); ++i) {
+    if (subject.forms[i].kind == AxiomForm::Kind::kRamification) maker.edit_ramification(i);
     if (subject.events.contains(subject.forms[i].event_symbol)) maker.edit(i);
     maker.move_effects(i);
   }

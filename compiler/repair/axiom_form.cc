@@ -8,6 +8,8 @@
 namespace parallax::compiler {
 namespace {
 
+constexpr std::string_view kStartTime = "0";
+
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 /// The first character from `at` on that is neither blank nor part of a comment.
@@ -118,8 +120,36 @@ bool read_trigger(const Ast& ast, AxiomForm& form) {
   return name_event(ast, ast.child(node, 0), ast.child(node, 1), form);
 }
 
-/// Is it about fluents at the time of one variable, and about nothing that happens? Sets the
-/// variable.
+/// `Terminates(event,F,time) & ... -> Initiates(event,G,time) & ...`, with one variable for the
+/// event of all effects.
+bool read_ramification(const Ast& ast, AxiomForm& form) {
+  if (!form.condition) return false;
+  form.effects = conjuncts_of(ast, form.head);
+  std::string event;
+  const auto is_of_event = [&](NodeId atom) {
+    const auto parts = effect_parts(ast, atom);
+    if (!parts || ast[parts->event].kind != NodeKind::kName ||
+        ast[parts->time].kind != NodeKind::kName) {
+      return false;
+    }
+    const std::string name(ast.name(ast[parts->event])), time(ast.name(ast[parts->time]));
+    const bool same = event.empty() || (event == name && form.time == time);
+    event = name;
+    form.time = time;
+    form.event = parts->event;
+    return same;
+  };
+  const auto is_variable = [&](const std::string& name) {
+    return std::find(form.variables.begin(), form.variables.end(), name) != form.variables.end();
+  };
+  if (!std::all_of(form.effects.begin(), form.effects.end(), is_of_event)) return false;
+  form.kind = AxiomForm::Kind::kRamification;
+  return is_variable(event) && is_variable(form.time) &&
+         std::any_of(form.conjuncts.begin(), form.conjuncts.end(), is_of_event);
+}
+
+/// Is it about fluents at the time of one variable, or at timepoint 0, and about nothing that
+/// happens? Sets the time.
 bool is_about_states(const Ast& ast, NodeId root, AxiomForm& form) {
   std::vector<NodeId> open = {root};
   while (!open.empty()) {
@@ -129,7 +159,8 @@ bool is_about_states(const Ast& ast, NodeId root, AxiomForm& form) {
     if (node.kind == NodeKind::kApply && ast.name(node) == "HoldsAt") {
       if (node.child_count != 2) return false;
       const auto& time = ast[ast.child(node, 1)];
-      if (time.kind != NodeKind::kName) return false;
+      const bool start = time.kind == NodeKind::kNumber && ast.name(time) == kStartTime;
+      if (time.kind != NodeKind::kName && !start) return false;
       const std::string variable(ast.name(time));
       if (!form.time.empty() && form.time != variable) return false;
       form.time = variable;
@@ -143,7 +174,8 @@ bool is_about_states(const Ast& ast, NodeId root, AxiomForm& form) {
     }
     for (std::uint32_t i = 0; i < node.child_count; ++i) open.push_back(ast.child(node, i));
   }
-  return std::find(form.variables.begin(), form.variables.end(), form.time) != form.variables.end();
+  return form.time == kStartTime ||
+         std::find(form.variables.begin(), form.variables.end(), form.time) != form.variables.end();
 }
 
 /// Variables, condition and head of a formula.
@@ -176,13 +208,15 @@ AxiomForm read_form(const Ast& ast, const Statement& statement) {
   if (read_late_effects(ast, form)) return form;
   form.effects.clear();
   form.event_symbol.clear();
+  if (auto of_any = outline(ast, statement); read_ramification(ast, of_any)) return of_any;
   if (read_precondition(ast, form)) return form;
   form.event_symbol.clear();
   if (read_trigger(ast, form)) return form;
   form = outline(ast, statement);
   auto about_states = form;
   if (!is_about_states(ast, form.body, about_states)) return form;
-  about_states.kind = AxiomForm::Kind::kState;
+  about_states.kind =
+      about_states.time == kStartTime ? AxiomForm::Kind::kStart : AxiomForm::Kind::kState;
   return about_states;
 }
 
@@ -236,7 +270,7 @@ std::vector<AxiomForm> all_forms(const ModelAst& model, const base::SourceFiles&
 std::vector<AxiomForm> axiom_forms(const ModelAst& model, const base::SourceFiles& files) {
   auto out = repairable_forms(model, files);
   std::erase_if(out, [](const auto& form) {
-    return form.kind == AxiomForm::Kind::kState || form.kind == AxiomForm::Kind::kLateEffects;
+    return form.event_symbol.empty() || form.kind == AxiomForm::Kind::kLateEffects;
   });
   return out;
 }

@@ -24,15 +24,19 @@ struct TextChange {
 /// -> Initiates(E,F,time) & ...`, a precondition of an event, `[variables] Happens(E,time) & ... ->
 /// ...`, or a trigger, `[variables] condition -> Happens(E,time)`; or a formula about the states of
 /// one timepoint, a constraint or a definition, which names no event; or effects that come late,
-/// `Happens(E,time-1) & ... -> Initiates(E2,F,time) & ...`, where `event` is E. Of other formulas
-/// only the condition is read.
+/// `Happens(E,time-1) & ... -> Initiates(E2,F,time) & ...`, where `event` is E; or effects of
+/// whatever event has another effect, `Terminates(event,F,time) & ... -> Initiates(event,G,time)`,
+/// where `event` is a variable; or what holds at timepoint 0. Of other formulas only the condition
+/// is read.
 struct AxiomForm {
   enum class Kind : std::uint8_t {
     kEffects,
     kPrecondition,
     kTrigger,
     kLateEffects,
+    kRamification,
     kState,
+    kStart,
     kOther
   };
   Kind kind = Kind::kEffects;
@@ -43,10 +47,10 @@ struct AxiomForm {
   std::vector<NodeId> conjuncts;       // of the condition
   NodeId head;
   NodeId body;                  // without the quantifiers around it
-  std::vector<NodeId> effects;  // kEffects: the conjuncts of the head
+  std::vector<NodeId> effects;  // of kinds with effects: the conjuncts of the head
   NodeId event;                 // the term
-  std::string event_symbol;     // kState: empty
-  std::string time;             // the variable
+  std::string event_symbol;     // kRamification, kState, kStart: empty
+  std::string time;             // the variable; kStart: "0"
 };
 
 /// The formulas of the model's own files (not of the foundations), in order.

@@ -93,8 +93,10 @@ ClosedTriggers closed_triggers(const ModelAst& model, const base::SourceFiles& f
   for (const auto& form : all_forms(model, files)) {
     const auto& ast = model.ast(form.place);
     // Effect axioms demand no event.
-    if (form.kind == AxiomForm::Kind::kEffects || form.kind == AxiomForm::Kind::kLateEffects)
+    if (form.kind == AxiomForm::Kind::kEffects || form.kind == AxiomForm::Kind::kLateEffects ||
+        form.kind == AxiomForm::Kind::kRamification) {
       continue;
+    }
     const bool trigger = form.kind == AxiomForm::Kind::kTrigger;
     Demands demands(ast);
     trigger ? demands.collect(*form.condition, false) : demands.collect(form.body, true);

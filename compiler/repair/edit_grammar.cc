@@ -226,4 +226,14 @@ std::vector<Edit> edits_in_scope(const ModelAst& model, const TypedModel& typed,
   return out;
 }
 
+std::vector<Edit> start_edits(const ModelAst& model, const TypedModel& typed,
+                              const std::vector<AxiomForm>& forms, const EditScope& scope) {
+  const auto subject = subject_of(model, typed, forms, scope);
+  std::vector<Edit> out;
+  add_start_edits(subject, out);
+  add_state_edits(subject, out);
+  add_start_facts(subject, out);
+  return out;
+}
+
 }  // namespace parallax::compiler

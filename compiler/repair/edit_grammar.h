@@ -30,6 +30,7 @@ struct Edit {
     kDelay,          // the effect comes later, or at once: `sentences` instead of the axiom
     kOpenEvent,      // the effects `nodes`, one of each axiom, become Releases
     kRewrite,        // a formula about states becomes `text`; of its file `change` is made
+    kAddFact,        // `text`, a fact of the start, is added: `change`
   };
   /// `[variables] condition -> effect.`
   struct Sentence {
@@ -43,7 +44,7 @@ struct Edit {
   std::optional<ConditionLiteral> literal;
   std::optional<ConditionLiteral> or_else;  // kNarrowEvent: it is enough that this holds
   std::string text;
-  TextChange change;                   // kRewrite
+  TextChange change;                   // kRewrite, kAddFact
   std::string event;                   // symbol
   std::vector<std::string> variables;  // of a new axiom: the event's arguments, then others
   std::size_t event_arity = 0;         // of a new axiom
@@ -56,6 +57,7 @@ struct Edit {
   std::vector<Sentence> sentences;  // kDelay
   bool names_constants = false;     // kAddEffect: in the place of variables
   bool moves_effect = false;        // kReplace: of another event, or of one with other arguments
+  bool moves_trigger = false;       // kReplace: the trigger demands `event`, which none demands yet
   bool frees = false;               // leaves open what a definition said
   /// Distance from what people usually write and forget: constants where a variable would do, a
   /// condition that no other axiom of the event has. Smaller is tried first among equals.
@@ -115,5 +117,11 @@ std::vector<std::string> arguments_of(const std::string& ground);
 /// constants are left out (condition_literals).
 std::vector<Edit> edits_in_scope(const ModelAst& model, const TypedModel& typed,
                                  const std::vector<AxiomForm>& forms, const EditScope& scope);
+
+/// Every single edit of what a model says of timepoint 0, and of its formulas about states, that
+/// concerns a fluent which differed there: `scope` has one step without an event, with the state of
+/// timepoint 0 after it. In a fixed order.
+std::vector<Edit> start_edits(const ModelAst& model, const TypedModel& typed,
+                              const std::vector<AxiomForm>& forms, const EditScope& scope);
 
 }  // namespace parallax::compiler

@@ -31,9 +31,20 @@ void add_axiom_edits(const EditSubject& subject, std::vector<Edit>& edits);
 void add_event_edits(const EditSubject& subject, std::vector<Edit>& edits);
 /// Appends triggers of idle events (EditScope) with an effect on a fluent that differed.
 void add_triggers(const EditSubject& subject, std::vector<Edit>& edits);
+/// Appends edits of a trigger that demands another event: one that an axiom demands, or one that
+/// has effects and that nothing brings about.
+void add_other_demands(const EditSubject& subject, std::size_t trigger, std::vector<Edit>& edits);
+/// Does the trigger's event end the condition? Such a condition keeps the event from happening
+/// again and again.
+bool is_undone(const EditSubject& subject, const AxiomForm& trigger,
+               const ConditionLiteral& condition);
 /// Appends edits of formulas about states, constraints and definitions: one is dropped or weakened,
 /// gains or loses a condition, or has another argument.
 void add_state_edits(const EditSubject& subject, std::vector<Edit>& edits);
+/// Appends the same edits of formulas about timepoint 0.
+void add_start_edits(const EditSubject& subject, std::vector<Edit>& edits);
+/// Appends facts of timepoint 0 that are missing, for fluents that differed there.
+void add_start_facts(const EditSubject& subject, std::vector<Edit>& edits);
 /// Appends effects on fluents with a number, `HoldsAt(F(count1),time) & count2=count1+1 ->
 /// Initiates(E,F(count2),time)`, where a step changed the number.
 void add_counter_effects(const EditSubject& subject, std::vector<Edit>& edits);

@@ -288,6 +288,7 @@ std::vector<TextChange> EditText::changes(const std::vector<std::size_t>& chosen
         break;
       }
       case Edit::Kind::kRewrite:
+      case Edit::Kind::kAddFact:
         out.push_back(edit.change);
         break;
       case Edit::Kind::kOpenEvent:
@@ -312,7 +313,8 @@ std::string EditText::words(const std::vector<std::size_t>& chosen) const {
     const auto axiom = [&] {
       const auto& tree = ast(edit.axioms.front());
       const auto& form = forms_[edit.axioms.front()];
-      const bool of_states = form.kind == AxiomForm::Kind::kState;
+      const bool of_states =
+          form.kind == AxiomForm::Kind::kState || form.kind == AxiomForm::Kind::kStart;
       return fmt::format("`{}` ({})",
                          cut_formula(print_formula(tree, of_states ? form.body : form.head)),
                          place(edit.axioms.front()));
@@ -364,6 +366,9 @@ std::string EditText::words(const std::vector<std::size_t>& chosen) const {
         break;
       case Edit::Kind::kRewrite:
         out.push_back(fmt::format("{} {}", axiom(), edit.words));
+        break;
+      case Edit::Kind::kAddFact:
+        out.push_back(fmt::format("a fact of the start is missing: `{}`", edit.text));
         break;
       case Edit::Kind::kDelay: {
         const auto& first = edit.sentences.front();

@@ -52,9 +52,20 @@ class GuardedForm {
                         edits_[i].kind == Edit::Kind::kRewrite;
       if (goes) conditions.push_back("!" + on(i));
     }
-    if (form_.kind != AxiomForm::Kind::kEffects) {
-      auto kept =
-          quantifier + joined(conditions, "(" + print_formula(ast, form_.head) + ")") + ".\n";
+    const bool of_effects =
+        form_.kind == AxiomForm::Kind::kEffects || form_.kind == AxiomForm::Kind::kRamification;
+    if (!of_effects) {
+      std::string kept;
+      auto own = conditions;
+      for (const auto i : touching_) {
+        const auto other = instead_of(form_.head, i);
+        if (other.empty()) continue;
+        own.push_back("!" + on(i));
+        auto instead = conditions;
+        instead.push_back(on(i));
+        kept += quantifier + joined(instead, other) + ".\n";
+      }
+      kept += quantifier + joined(own, "(" + print_formula(ast, form_.head) + ")") + ".\n";
       for (const auto i : touching_) {
         if (edits_[i].kind != Edit::Kind::kRewrite) continue;
         kept += quantifier + on(i) + " -> (" + edits_[i].text + ").\n";
@@ -62,7 +73,8 @@ class GuardedForm {
       return kept;
     }
     std::string out;
-    if (conditions.size() > 1 && replaces_effects()) conditions = {share(conditions, out)};
+    const bool shares = form_.kind == AxiomForm::Kind::kEffects && conditions.size() > 1;
+    if (shares && replaces_effects()) conditions = {share(conditions, out)};
     for (const auto effect : form_.effects) {
       auto kept = conditions;
       for (const auto i : touching_) {
@@ -215,7 +227,7 @@ std::string only_if_triggered(const std::vector<Edit>& edits) {
   std::map<std::string, std::string> by_event;  // "[a,time] Happens(E(a),time) -> ..."
   for (std::size_t i = 0; i < edits.size(); ++i) {
     const auto& edit = edits[i];
-    if (edit.kind != Edit::Kind::kAddTrigger) continue;
+    if (edit.kind != Edit::Kind::kAddTrigger && !edit.moves_trigger) continue;
     auto& text = by_event[edit.event];
     if (!text.empty()) {
       text += " | " + on(i);

@@ -75,7 +75,9 @@ class ModelMutator {
           break;
         case AxiomForm::Kind::kTrigger:
         case AxiomForm::Kind::kLateEffects:
+        case AxiomForm::Kind::kRamification:
         case AxiomForm::Kind::kState:
+        case AxiomForm::Kind::kStart:
         case AxiomForm::Kind::kOther:
           mutate_other(i);
           break;

@@ -1,4 +1,5 @@
-// Edits of formulas about states: constraints, and definitions of fluents that follow from others.
+// Edits of formulas about states: constraints, definitions of fluents that follow from others, and
+// what holds at timepoint 0.
 //
 // Such a formula is dropped, or a part of its text gives way to another one: a literal is negated,
 // goes, or has another argument or fluent; an equivalence keeps one direction; a condition is
@@ -47,6 +48,7 @@ class StateFormulaEdits {
       find_defined(root);
     }
     if (subject_.scope.wide) return;
+    if (form_.condition) drop_condition();
     auto variables = sorted(form_.variables);
     edit_parts(form_.body, variables);
     add_conditions(root, variables);
@@ -117,6 +119,12 @@ class StateFormulaEdits {
             "with `" + instead + "` in the place of `" + text_of(part) + "`");
   }
 
+  /// `A -> B` becomes B.
+  void drop_condition() {
+    const TextExtent gone{extent(*form_.condition).begin, extent(form_.head).begin};
+    rewrite(gone, "", 3, "also without the condition `" + text_of(extent(*form_.condition)) + "`");
+  }
+
   void keep_one_direction(const Node& root) {
     const auto left = beside_arrow(ast_.child(root, 0)), right = beside_arrow(ast_.child(root, 1));
     rewrite(body_, left + " -> " + right, 4, "only from left to right");
@@ -159,12 +167,28 @@ class StateFormulaEdits {
       for (const auto& [text, oddity] : other_comparisons(ast_, at, subject_.typed, variables)) {
         replace({node.begin, node.end}, text, oddity + 1);
       }
+      name_others(node);
       return;
     }
     if (node.kind == NodeKind::kBinary && (node.op == Operator::kAnd || node.op == Operator::kOr)) {
       drop_parts(node);
     }
     for (std::uint32_t i = 0; i < node.child_count; ++i) edit_parts(ast_.child(node, i), variables);
+  }
+
+  /// Other constants in `x=c`.
+  void name_others(const Node& comparison) {
+    if (comparison.child_count != 2) return;
+    for (const std::uint32_t i : {0U, 1U}) {
+      const auto& constant = ast_[ast_.child(comparison, i)];
+      const auto& variable = ast_[ast_.child(comparison, 1 - i)];
+      if (constant.kind != NodeKind::kName || variable.kind != NodeKind::kName) continue;
+      const auto sort = sort_of_variable(subject_.typed, ast_.name(variable));
+      const auto names = sort ? constants_of(subject_.typed, *sort) : std::vector<std::string>();
+      const bool known = std::find(names.begin(), names.end(), ast_.name(constant)) != names.end();
+      if (!known || names.size() > kMostAdded) continue;
+      for (const auto& name : names) replace({constant.begin, constant.end}, name, 2);
+    }
   }
 
   /// Each part of a conjunction or disjunction goes with the sign beside it.
@@ -214,6 +238,7 @@ class StateFormulaEdits {
   /// `A -> B` under one more condition; `F <-> B` with a further part of B; any other formula only
   /// where something holds.
   void add_conditions(const Node& root, const std::vector<SortedVariable>& variables) {
+    if (const auto defined = definiens(root)) add_inner_conditions(*defined, variables);
     for (const auto& literal : condition_literals(subject_.typed, variables, kMostAdded)) {
       if (!subject_.relevance.around_some_step(literal, false, true)) continue;
       if (literal.symbol == defined_ && !defined_.empty()) continue;
@@ -235,8 +260,39 @@ class StateFormulaEdits {
     }
   }
 
+  /// `F <-> {x} B` with a further part of B that mentions x.
+  void add_inner_conditions(NodeId defined, const std::vector<SortedVariable>& variables) {
+    const auto& node = ast_[defined];
+    if (node.kind != NodeKind::kExists) return;
+    std::vector<std::string> inner_names;
+    for (std::uint32_t i = 0; i + 1 < node.child_count; ++i) {
+      inner_names.emplace_back(ast_.name(ast_[ast_.child(node, i)]));
+    }
+    auto all = variables;
+    const auto inner = sorted(inner_names);
+    all.insert(all.end(), inner.begin(), inner.end());
+    auto taken = form_.variables;
+    taken.insert(taken.end(), inner_names.begin(), inner_names.end());
+    const auto body = ast_.child(node, node.child_count - 1);
+    for (const auto& literal : condition_literals(subject_.typed, all, kMostAdded)) {
+      const bool of_inner = std::any_of(
+          literal.arguments.begin(), literal.arguments.end(), [&](const auto& argument) {
+            return argument.kind == LiteralArgument::Kind::kVariable &&
+                   std::find(inner_names.begin(), inner_names.end(), argument.name) !=
+                       inner_names.end();
+          });
+      if (!of_inner || (literal.symbol == defined_ && !defined_.empty())) continue;
+      const auto text = print(literal, form_.time, taken);
+      const auto old = bound(body);
+      if (old.find(text) != std::string::npos) continue;
+      rewrite(extent(body), old + " & " + text, 4 + subject_.relevance.oddity(literal, ""),
+              "only if `" + text + "`");
+    }
+  }
+
   /// The side of a definition that is not the defined fluent.
   std::optional<NodeId> definiens(const Node& root) const {
+    if (root.kind != NodeKind::kBinary || root.op != Operator::kIff) return std::nullopt;
     for (const std::uint32_t i : {0U, 1U}) {
       const auto one = ast_.child(root, i), other = ast_.child(root, 1 - i);
       if (ast_[one].kind == NodeKind::kApply) return other;
@@ -269,6 +325,13 @@ class StateFormulaEdits {
 void add_state_edits(const EditSubject& subject, std::vector<Edit>& edits) {
   for (std::size_t i = 0; i < subject.forms.size(); ++i) {
     if (subject.forms[i].kind != AxiomForm::Kind::kState) continue;
+    StateFormulaEdits(subject, i, edits).edit();
+  }
+}
+
+void add_start_edits(const EditSubject& subject, std::vector<Edit>& edits) {
+  for (std::size_t i = 0; i < subject.forms.size(); ++i) {
+    if (subject.forms[i].kind != AxiomForm::Kind::kStart) continue;
     StateFormulaEdits(subject, i, edits).edit();
   }
 }

@@ -4,14 +4,17 @@
 // Proposed are `[arguments,time] L -> Happens(E(arguments),time)` for the literals L that name
 // every argument of E and could have held in front of a step at which a fluent of E's effects
 // differed, and the trigger by all that the preconditions of E ask for. A second condition of such
-// a trigger is an edit of its own. Cost: literals of the arguments, squared for short lists.
+// a trigger is an edit of its own. Or a trigger names the wrong event. Cost: literals of the
+// arguments, squared for short lists.
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "compiler/repair/edit_subject.h"
+#include "compiler/repair/number_term.h"
 #include "compiler/syntax/printer.h"
 
 namespace parallax::compiler {
@@ -151,6 +154,25 @@ class TriggerEdits {
   std::vector<Edit>& out_;
 };
 
+/// Each way to choose variables of the form for arguments of these sorts: "a,b".
+std::vector<std::string> arguments_from(const TypedModel& typed, const std::vector<SortId>& sorts,
+                                        const AxiomForm& form) {
+  std::vector<std::string> out = {""};
+  for (const auto sort : sorts) {
+    std::vector<std::string> longer;
+    for (const auto& begun : out) {
+      for (const auto& variable : form.variables) {
+        const auto own = sort_of_variable(typed, variable);
+        if (variable == form.time || !own || !typed.sorts_overlap(*own, sort)) continue;
+        longer.push_back(begun + (begun.empty() ? "" : ",") + variable);
+      }
+    }
+    out = std::move(longer);
+    if (out.size() > kMostLiterals) return {};
+  }
+  return out;
+}
+
 }  // namespace
 
 void add_triggers(const EditSubject& subject, std::vector<Edit>& edits) {
@@ -160,6 +182,54 @@ void add_triggers(const EditSubject& subject, std::vector<Edit>& edits) {
     if (!symbol || subject.typed.symbols[*symbol].kind != SymbolKind::kEvent) continue;
     maker.add(event, subject.typed.symbols[*symbol].arguments);
   }
+}
+
+void add_other_demands(const EditSubject& subject, std::size_t trigger, std::vector<Edit>& edits) {
+  const auto& form = subject.forms[trigger];
+  for (const auto& symbol : subject.typed.symbols) {
+    const bool idle = subject.scope.idle.contains(symbol.name);
+    if (symbol.kind != SymbolKind::kEvent || symbol.name == form.event_symbol ||
+        !(idle || subject.scope.demanded.contains(symbol.name))) {
+      continue;
+    }
+    for (const auto& arguments : arguments_from(subject.typed, symbol.arguments, form)) {
+      Edit edit;
+      edit.kind = Edit::Kind::kReplace;
+      edit.axioms = {trigger};
+      edit.node = form.head;
+      edit.text = "Happens(" + symbol.name + "(" + arguments + ")," + form.time + ")";
+      edit.event = symbol.name;
+      edit.variables = variables_for(subject.typed, symbol.arguments);
+      edit.moves_trigger = idle;
+      edit.oddity = idle ? 0 : 3;
+      edits.push_back(std::move(edit));
+    }
+  }
+}
+
+bool is_undone(const EditSubject& subject, const AxiomForm& trigger,
+               const ConditionLiteral& condition) {
+  const auto wanted = print(condition, trigger.time, trigger.variables);
+  const auto& tree = subject.model.ast(trigger.place);
+  return std::any_of(subject.forms.begin(), subject.forms.end(), [&](const AxiomForm& form) {
+    if (form.kind != AxiomForm::Kind::kEffects || form.event_symbol != trigger.event_symbol) {
+      return false;
+    }
+    const auto& own = subject.model.ast(form.place);
+    std::map<std::string, std::string> names;
+    const auto count = std::min(own[form.event].child_count, tree[trigger.event].child_count);
+    for (std::uint32_t k = 0; k < count; ++k) {
+      names[print_formula(own, own.child(own[form.event], k))] =
+          print_formula(tree, tree.child(tree[trigger.event], k));
+    }
+    return std::any_of(form.effects.begin(), form.effects.end(), [&](NodeId effect) {
+      const std::string_view kind = own.name(own[effect]);
+      if (kind == "Releases") return false;
+      const auto fluent = with_names(print_formula(own, effect_parts(own, effect)->fluent), names);
+      return wanted ==
+             (kind == "Initiates" ? "!HoldsAt(" : "HoldsAt(") + fluent + "," + trigger.time + ")";
+    });
+  });
 }
 
 }  // namespace parallax::compiler

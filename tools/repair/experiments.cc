@@ -50,7 +50,10 @@ class Experiments {
       auto sequences = random_sequences(first_, experiments_, context_);
       if (!sequences) return context_.sink().already_reported();
       first_.sequences = *std::move(sequences);
-      if (last_) last_->sequences = first_.sequences;
+      if (last_) {
+        last_->sequences = first_.sequences;
+        last_->memo = first_.memo;
+      }
     }
     auto proposed = propose_repairs(last_ ? *last_ : first_, context_);
     if (!proposed) return proposed;
@@ -147,7 +150,7 @@ class Experiments {
   /// Sets the reason only where experiments would have been needed.
   bool may_be_made(RepairResult& result) {
     if (contenders(result).size() < 2 || context_.stopped()) return false;
-    result.why_tied = forbidden();
+    result.why_tied = first_.start ? "no run begins before the start is repaired" : forbidden();
     return result.why_tied.empty();
   }
 
@@ -231,6 +234,7 @@ class Experiments {
     auto input = load_repair_input(wide, context_);
     if (!input) return context_.sink().already_reported();
     input->sequences = first_.sequences;
+    input->memo = first_.memo;
     auto proposed = propose_repairs(*input, context_);
     if (!proposed) return context_.sink().already_reported();
     result = *std::move(proposed);
@@ -291,6 +295,7 @@ class Experiments {
       result.more = true;
     }
     result.tied_hidden = result.tied - std::min(result.tied, all.size());
+    compare_traces(first_, all, context_);
     hold_against_sequences(first_, result, context_);
     result.remarks.insert(result.remarks.begin(), remarks_.begin(), remarks_.end());
     return result;

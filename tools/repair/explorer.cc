@@ -117,6 +117,14 @@ class SequenceExplorer {
       const auto* binding = loaded_.scenario.mapping->find(fluents.ground()[i].symbol);
       if (binding != nullptr && !binding->is_ignored()) compared.push_back(fluents.id(i));
     }
+    for (const auto& start : options_.starts) {
+      auto& holds = starts_.emplace_back();
+      for (const auto fluent : compared) {
+        const auto found = start.find(symbols_->name(fluent));
+        if (found != start.end() && found->second) holds.push_back(fluent);
+      }
+    }
+    if (!starts_.empty()) return base::Unit{};
     auto states = loop.initial_states(compared);
     if (!states) return context_.sink().already_reported();
     if (*states) starts_ = std::move((*states)->holds);

@@ -20,6 +20,8 @@ struct ExploreOptions {
   std::int64_t first = 1, count = 1;  // numbers of the sequences
   /// Draws from all events of the model that the world can be asked for, not the plan's alone.
   bool all_events = false;
+  /// Where the sequences begin, by what holds; empty: in the initial states of the model.
+  std::vector<Evidence::State> starts = {};
   std::filesystem::path run_dir;
   std::string tool_version;
   std::function<void(const harness::CampaignProgress&)> progress;

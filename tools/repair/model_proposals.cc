@@ -252,7 +252,8 @@ class ModelSearch {
     const auto changes = texts.changes(set);
     Proposal proposal;
     proposal.text = compiler::flat_text(domain_.ast, domain_.files, changes);
-    proposal.verdict = verify(*proposal.text, evidence, input_.sequences.choosing, context_);
+    proposal.verdict =
+        verify(*proposal.text, evidence, input_.sequences.choosing, context_, input_.memo.get());
     if (!proposal.verdict.admits) {
       result_.remarks.push_back(
           fmt::format("not proposed, as the check of its text says no: {} ({})", texts.words(set),

@@ -36,6 +36,7 @@ struct Proposal {
   std::vector<PropertyEffect> properties;  // of those that were asked about, in their order
   bool precaution = false;                 // what may fail is taken to fail
   bool open = false;                       // it leaves open what happens
+  bool of_start = false;                   // it settles RepairInput::start
   bool hides_failure = false;  // of a plan: the failure is taken, and nothing is done about it
   Verdict verdict;
   std::size_t unexplained = 0;  // runs that count against it in the ranking
@@ -45,7 +46,7 @@ struct Proposal {
   /// It explains the first difference, and no run follows it to its end.
   bool only_begins() const {
     const bool of_model = changes == Changes::kModel || changes == Changes::kBinding;
-    return of_model && !precaution && verdict.runs_whole == 0;
+    return of_model && !precaution && !of_start && verdict.runs_whole == 0;
   }
   /// Is it held against random sequences? One that leaves an outcome open would admit either.
   bool meets_sequences() const {

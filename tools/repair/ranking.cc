@@ -14,6 +14,7 @@
 #include "tools/repair/ranking.h"
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 
 namespace parallax::tools {
@@ -120,6 +121,22 @@ void drop_refuted(std::vector<Proposal>& proposals) {
                   proposals.end());
 }
 
+void compare_traces_of(const RepairInput& input, const std::vector<Proposal*>& proposals,
+                       Context& context) {
+  std::optional<TraceComparer> comparer;
+  for (auto* proposal : proposals) {
+    if (proposal->effects || !proposal->text) continue;
+    auto& known = input.memo->effects;
+    if (const auto found = known.find(*proposal->text); found != known.end()) {
+      proposal->effects = found->second;
+      continue;
+    }
+    if (!comparer) comparer.emplace(input.loaded, input.text, context);
+    proposal->effects = comparer->compare(*proposal->text);
+    if (!context.stopped()) known.emplace(*proposal->text, *proposal->effects);
+  }
+}
+
 /// Do random sequences bear out less than half of what they do for the other? Such a proposal is
 /// worth no experiment.
 bool clearly_behind(const Proposal& proposal, const Proposal& other) {
@@ -127,6 +144,12 @@ bool clearly_behind(const Proposal& proposal, const Proposal& other) {
 }
 
 }  // namespace
+
+void compare_traces(const RepairInput& input, std::vector<Proposal>& proposals, Context& context) {
+  std::vector<Proposal*> all;
+  for (auto& proposal : proposals) all.push_back(&proposal);
+  compare_traces_of(input, all, context);
+}
 
 Unranked rank_proposals(const RepairInput& input, std::size_t limit,
                         std::vector<Proposal>& proposals, Context& context) {
@@ -151,10 +174,14 @@ Unranked rank_proposals(const RepairInput& input, std::size_t limit,
                       [&](const Proposal& each) { return !likelier(proposals.front(), each); }));
     proposals.resize(kept);
   }
-  TraceComparer comparer(input.loaded, input.text, context);
-  for (auto& proposal : proposals) {
-    if (!proposal.effects && proposal.text) proposal.effects = comparer.compare(*proposal.text);
+  // Traces decide among equals alone, and comparing them takes longer than all that goes before.
+  std::vector<Proposal*> equals;
+  for (std::size_t i = 0; i < proposals.size(); ++i) {
+    const bool above = i > 0 && !likelier(proposals[i - 1], proposals[i]);
+    const bool below = i + 1 < proposals.size() && !likelier(proposals[i], proposals[i + 1]);
+    if (above || below) equals.push_back(&proposals[i]);
   }
+  compare_traces_of(input, equals, context);
   std::stable_sort(proposals.begin(), proposals.end(), changes_less);
   if (proposals.size() > wanted) {
     proposals.resize(wanted);

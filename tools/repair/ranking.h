@@ -14,10 +14,14 @@ struct Unranked {
   std::size_t not_compared = 0;  // of them were as likely as the first, before traces were compared
 };
 
-/// Sorts proposals, best first, and computes their effects on the traces. Leaves at most `limit`
-/// (0: all) of them. Those that the order cannot distinguish are tied.
+/// Sorts proposals, best first. Leaves at most `limit` (0: all) of them. Those that the order
+/// cannot distinguish are tied. Of proposals that are equal but for their effects on the traces
+/// these are computed.
 Unranked rank_proposals(const RepairInput& input, std::size_t limit,
                         std::vector<Proposal>& proposals, Context& context);
+
+/// Computes the effects on the traces where they are not known yet.
+void compare_traces(const RepairInput& input, std::vector<Proposal>& proposals, Context& context);
 
 /// Number of ranked proposals, from the first one on, that are tied for the first rank.
 std::size_t of_first_rank(const std::vector<Proposal>& proposals);

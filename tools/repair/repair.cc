@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <span>
 
 #include "compiler/base/words.h"
 #include "tools/repair/model_proposals.h"
@@ -11,6 +12,7 @@
 #include "tools/repair/properties.h"
 #include "tools/repair/ranking.h"
 #include "tools/repair/region_split.h"
+#include "tools/repair/start_proposals.h"
 
 namespace parallax::tools {
 namespace {
@@ -20,6 +22,11 @@ constexpr ProposalSource kSources[] = {
     model_proposals,
     region_splits,
 };
+constexpr ProposalSource kStartSources[] = {start_proposals};
+
+std::span<const ProposalSource> sources_for(const RepairInput& input) {
+  return input.start ? std::span<const ProposalSource>(kStartSources) : kSources;
+}
 
 template <typename T>
 void append(std::vector<T>& to, std::vector<T> more) {
@@ -32,7 +39,8 @@ base::Status add_plan_proposals(const RepairInput& input, RepairResult& result, 
   const auto limit = static_cast<std::size_t>(input.options.limit);
   auto& all = result.proposals;
   const auto place = std::min(all.size(), std::max(kMostModels, result.tied));
-  if (!input.partings.empty() && !context.stopped() && (limit == 0 || limit > place)) {
+  const bool has_step = !input.partings.empty() && !input.start;
+  if (has_step && !context.stopped() && (limit == 0 || limit > place)) {
     auto found = plan_proposals(input, all, context);
     append(result.remarks, std::move(found.remarks));
     result.edits += found.edits;
@@ -89,7 +97,9 @@ bool is_refuted(const Proposal& proposal, const RepairResult& result) {
 base::Result<RepairResult> propose_repairs(const RepairOptions& options, Context& context) {
   const auto input = load_repair_input(options, context);
   if (!input) return context.sink().already_reported();
-  return propose_repairs(*input, context);
+  auto result = propose_repairs(*input, context);
+  if (result) compare_traces(*input, result->proposals, context);
+  return result;
 }
 
 base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& context) {
@@ -101,9 +111,13 @@ base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& co
   result.contradictions = input.contradictions;
   result.remarks = input.remarks;
   result.finished = input.finished;
+  if (input.start) {
+    result.starts_excluded = input.start->refused.size();
+    result.starts_shared = input.start->is_shared ? input.start->wanted.size() : 0;
+  }
   if (input.partings.empty()) return result;
   result.causes = causes_of(input);
-  for (const auto source : kSources) {
+  for (const auto source : sources_for(input)) {
     if (context.stopped()) break;
     auto found = source(input, context);
     append(result.proposals, std::move(found.proposals));

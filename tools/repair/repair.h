@@ -13,6 +13,8 @@ namespace parallax::tools {
 struct RepairResult {
   std::size_t runs = 0, failed = 0;  // read from the folder; those that the model cannot follow
   std::vector<RunParting> partings;
+  /// RepairInput::start: starts of the model that the world excludes, and those that both have.
+  std::size_t starts_excluded = 0, starts_shared = 0;
   std::vector<std::string> contradictions;
   std::vector<RepairCause> causes;  // of the contradictions
   std::vector<Proposal> proposals;  // best first

@@ -120,6 +120,21 @@ void find_partings(RepairInput& input, Context& context) {
   input.evidence = std::move(usable);
 }
 
+/// Looks for starts that the world excludes, where these may be why the run came to no verdict. The
+/// starts of an open-loop run depend on the plan and the constraints, too: there a conflict is that
+/// the world has no start of the model at all.
+void find_start_conflict(RepairInput& input, Context& context) {
+  if (input.finished || !input.partings.empty() || context.stopped()) return;
+  const auto comparison = StartComparison::make(input.loaded, context);
+  if (comparison == nullptr) return;
+  std::string why;
+  const auto model = compile_text(input.text, 1, context, why);
+  if (!model) return;
+  const bool closed = recorded_execution(input.header) == harness::Execution::kClosedLoop;
+  input.start = comparison->conflict(*model, closed);
+  if (input.start) input.partings.push_back({{}, 0, {}, input.start->differs});
+}
+
 void find_contradictions(RepairInput& input) {
   for (const auto& a : input.evidence) {
     if (!a.divergence) continue;
@@ -191,6 +206,7 @@ base::Result<RepairInput> load_repair_input(const RepairOptions& options, Contex
       input.paths.begin(), input.paths.end(), [](const auto& path) { return path.experiment; }));
   find_partings(input, context);
   if (!input.partings.empty()) find_contradictions(input);
+  find_start_conflict(input, context);
   return input;
 }
 

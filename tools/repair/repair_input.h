@@ -12,6 +12,8 @@
 #include "tools/app/recorded_run.h"
 #include "tools/repair/domain_model.h"
 #include "tools/repair/evidence.h"
+#include "tools/repair/start_conflict.h"
+#include "tools/repair/verification.h"
 
 namespace parallax::tools {
 
@@ -28,7 +30,7 @@ struct RepairOptions {
 
 /// A place where runs and model part.
 struct RunParting {
-  std::vector<std::string> ids;  // of the runs
+  std::vector<std::string> ids;  // of the runs; none: the start (RepairInput::start)
   std::size_t after = 0;         // timepoint
   Evidence::Step step;           // in front of it
   Evidence::State seen;          // there, unlike what the model says
@@ -60,8 +62,14 @@ struct RepairInput {
   /// Runs that went the same way up to a step and then differently: chance, or the simulator.
   std::vector<std::string> contradictions = {};
   std::vector<std::string> remarks = {};
+  /// The world excludes starts of the model. This is asked of a run without a verdict in which
+  /// nothing went wrong, and then is the only parting, at timepoint 0 and without runs or an event.
+  std::optional<StartConflict> start = std::nullopt;
   /// Random sequences of events that the proposals are held against (validation_runs).
   RandomSequences sequences = {};
+  /// What `sequences.choosing` say of proposals, and the effects of these on traces; shared by the
+  /// inputs of one call.
+  std::shared_ptr<SequenceMemo> memo = std::make_shared<SequenceMemo>();
 };
 
 /// Do both have the same events up to `t`, through the same states before the last of them?

@@ -17,12 +17,26 @@ std::vector<std::string> printed(std::vector<std::string> lines) {
   return lines;
 }
 
-std::string parting_text(const RunParting& parting) {
+/// The conflict at the start in words; `seen` is what the world has there.
+std::string start_text(const RepairResult& result, const std::string& seen) {
+  if (result.starts_shared == 0) {
+    return fmt::format("  the start: at 0 the world has, and the model cannot have: {}\n", seen);
+  }
+  return fmt::format(
+      "  the start: {} of {} starts of the model {} none of the world, which has at 0: {}\n",
+      result.starts_excluded, result.starts_excluded + result.starts_shared,
+      base::agreed(result.starts_excluded, "is", "are"), seen);
+}
+
+std::string parting_text(const RepairResult& result, const RunParting& parting) {
   std::vector<std::string> seen;
   for (const auto& [fluent, holds] : parting.seen) seen.push_back((holds ? "" : "not ") + fluent);
   constexpr std::size_t kMost = 6;
   const auto more = seen.size() > kMost ? fmt::format(" and {} more", seen.size() - kMost) : "";
   if (seen.size() > kMost) seen.resize(kMost);
+  if (parting.ids.empty()) {
+    return start_text(result, fmt::format("{}{}", fmt::join(seen, ", "), more));
+  }
   const auto runs = parting.ids.size() == 1
                         ? "run " + parting.ids.front()
                         : fmt::format("{} runs, first {}", parting.ids.size(), parting.ids.front());
@@ -46,7 +60,7 @@ std::string head(const RepairResult& result, const std::string& folder) {
                     base::printable(text));
   }
   for (const auto& cause : result.causes) out += "  " + base::printable(cause.words) + "\n";
-  for (const auto& parting : result.partings) out += parting_text(parting);
+  for (const auto& parting : result.partings) out += parting_text(result, parting);
   return out;
 }
 
@@ -116,6 +130,9 @@ std::vector<std::string> proposal_sentences(const Proposal& proposal, const Repa
     return out;
   }
   const auto& verdict = proposal.verdict;
+  if (proposal.of_start) {
+    out.emplace_back("With it the starts of the model are starts of the world.");
+  }
   auto first =
       fmt::format("Consistent with {} of {}", verdict.runs_consistent, base::counted(runs, "run"));
   if (verdict.runs_whole < verdict.runs_consistent) {
@@ -194,7 +211,8 @@ TieWords tie_words(const RepairResult& result) {
 
 std::string repair_text(const RepairResult& result, const RepairOptions& options) {
   const auto folder = base::printable(options.folder.folder);
-  if (result.runs == 0) return folder + ": no simulation in it came to its end\n";
+  if (result.runs == 0 && result.partings.empty())
+    return folder + ": no simulation in it came to its end\n";
   if (result.partings.empty() && !result.remarks.empty()) {
     return fmt::format("{}: {}, and nothing that an edit of the model could mend:\n  {}\n", folder,
                        base::counted(result.runs, "run"),
@@ -220,10 +238,10 @@ std::string repair_text(const RepairResult& result, const RepairOptions& options
     if (!result.nearest_miss.empty())
       out += "Nearest miss: " + base::printable(result.nearest_miss) + ".\n";
     for (const auto& hint : result.hints) out += base::printable(hint) + ".\n";
-    out += fmt::format(
-        "What the model says of timepoint 0 is not edited; `parallax explain {}` names the axioms "
-        "that a run contradicts.\n",
-        folder);
+    if (result.runs > 0) {
+      out +=
+          fmt::format("`parallax explain {}` names the axioms that a run contradicts.\n", folder);
+    }
     return out;
   }
   const auto is_plan = [](const Proposal& proposal) {

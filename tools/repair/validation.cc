@@ -48,6 +48,7 @@ base::Result<RandomSequences> random_sequences(const RepairInput& input,
   explore_options.seed = input.header.seed;
   explore_options.count = 2 * kSequences;
   explore_options.all_events = true;
+  if (input.start) explore_options.starts = input.start->wanted;
   explore_options.run_dir = folder.path() / "run";
   std::vector<Evidence> known;
   for (const auto& seen : input.evidence) {

@@ -78,7 +78,7 @@ std::size_t runs_undemanded(EvidenceAdmission& strict, const std::vector<Evidenc
 }  // namespace
 
 Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
-               const std::vector<Evidence>& further, const Context& context) {
+               const std::vector<Evidence>& further, const Context& context, SequenceMemo* memo) {
   std::size_t horizon = 1;
   for (const auto& seen : evidence) horizon = std::max(horizon, seen.steps.size());
   for (const auto& seen : further) horizon = std::max(horizon, seen.steps.size());
@@ -110,18 +110,28 @@ Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
     out.refuses = out.refuses || answer.refused;
   }
   out.admits = true;
+  const auto known = memo == nullptr ? nullptr : memo->find(text);
+  if (known != nullptr) {
+    out.validated = known->validated;
+    out.refuted_by = known->refuted_by;
+    if (whole.empty()) return out;
+  }
+  const auto asked = known != nullptr ? std::vector<Evidence>() : further;
   const StrictModel demanded(text);
   const auto strict =
       demanded.text.empty()
           ? std::nullopt
           : compile_text(demanded.text, static_cast<std::int64_t>(horizon), context, wrong);
   if (!strict) {
-    validate(admission, further, out);
-    return out;
+    validate(admission, asked, out);
+  } else {
+    EvidenceAdmission strictly(*strict, context.stop());
+    out.runs_undemanded = runs_undemanded(strictly, demanded.told(whole));
+    validate(strictly, demanded.told(asked), out);
   }
-  EvidenceAdmission strictly(*strict, context.stop());
-  out.runs_undemanded = runs_undemanded(strictly, demanded.told(whole));
-  validate(strictly, demanded.told(further), out);
+  if (memo != nullptr && !context.stopped()) {
+    memo->by_text.insert_or_assign(text, SequenceMemo::Said{out.validated, out.refuted_by});
+  }
   return out;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,21 +26,38 @@ struct Verdict {
   std::size_t fresh_right = 0;  // and fresh ones (hold_against)
   std::string refuted_by;       // the first other one: "Call(ground), Enter()"
 };
-/// Compiles `text`, the edited model, and asks a solver about each way that runs went, and about
-/// further sequences, which it need not admit.
-Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
-               const std::vector<Evidence>& further, const Context& context);
-
-/// Asks about fresh sequences, too.
-void hold_against(const std::string& text, const std::vector<Evidence>& fresh,
-                  const Context& context, Verdict& verdict);
-
 /// Effect of an edit on the traces of the scenario: its model with its plan, up to its horizon.
 struct TraceEffects {
   std::optional<runtime::TraceNumber> lost, gained;  // none: not known
   /// A trace reaches the state constraints; none: it is not known, or nothing asks for it.
   std::optional<bool> reaches;
 };
+
+/// What random sequences, and the traces, said of models by their texts: it stays the same while
+/// runs are added.
+struct SequenceMemo {
+  struct Said {
+    std::size_t validated = 0;
+    std::string refuted_by;
+  };
+  std::map<std::string, Said> by_text;
+  std::map<std::string, TraceEffects> effects;
+
+  const Said* find(const std::string& text) const {
+    const auto found = by_text.find(text);
+    return found == by_text.end() ? nullptr : &found->second;
+  }
+};
+
+/// Compiles `text`, the edited model, and asks a solver about each way that runs went, and about
+/// further sequences, which it need not admit. What `memo` has of these is not asked again.
+Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
+               const std::vector<Evidence>& further, const Context& context,
+               SequenceMemo* memo = nullptr);
+
+/// Asks about fresh sequences, too.
+void hold_against(const std::string& text, const std::vector<Evidence>& fresh,
+                  const Context& context, Verdict& verdict);
 
 /// Compares models with the one of the scenario.
 class TraceComparer {

@@ -54,5 +54,46 @@ TEST_CASE("a definition names another fluent, another argument, or the opposite"
   }
 }
 
+/// Two boxes that spill what is in them when they are opened or thrown.
+struct Boxes : MistakenWorld {
+  explicit Boxes(const Mistakes& mistakes)
+      : MistakenWorld(
+            "sort box\nbox red, blue\n"
+            "fluent Shut(box)\nfluent Full(box)\nfluent Wet()\n"
+            "event Open(box)\nevent Throw(box)\nevent Fill(box)\nevent Dry()\n\n"
+            "[box,time] Terminates(Open(box),Shut(box),time).\n"
+            "[box,time] Terminates(Throw(box),Shut(box),time).\n"
+            "[box,time] Initiates(Fill(box),Full(box),time).\n"
+            "[box,time] Initiates(Fill(box),Shut(box),time).\n"
+            "[time] Terminates(Dry(),Wet(),time).\n"
+            "[event,box,time] Terminates(event,Shut(box),time) & HoldsAt(Full(box),time) -> "
+            "Initiates(event,Wet(),time).\n"
+            "[event,box,time] Terminates(event,Shut(box),time) -> "
+            "Terminates(event,Full(box),time).\n",
+            "[box] HoldsAt(Shut(box),0).\n[box] !HoldsAt(Full(box),0).\n!HoldsAt(Wet(),0).\n",
+            {{"Fill(red)", "Full(red)"},
+             {"Open(blue)", "!Shut(blue)"},
+             {"Open(red)", "Wet()"},
+             {"Dry()", "!Wet()"},
+             {"Fill(blue)", "Full(blue)"},
+             {"Throw(blue)", "Wet()"}},
+            mistakes) {}
+};
+
+TEST_CASE("what follows from an effect has the other sign, or is of another fluent") {
+  const std::string right = "Initiates(event,Wet(),time)";
+  for (const std::string wrong :
+       {"Terminates(event,Wet(),time)", "Initiates(event,Shut(box),time)"}) {
+    CAPTURE(wrong);
+    const Boxes cli(Mistakes{{right, wrong}});
+    CHECK(mentions(cli.first(), "becomes `" + right + "`"));
+  }
+}
+
+TEST_CASE("what follows from an effect lacks a condition") {
+  const Boxes cli(Mistakes{{" & HoldsAt(Full(box),time) -> Initiates", " -> Initiates"}});
+  CHECK(mentions(cli.first(), "only if `HoldsAt(Full(box),time)`"));
+}
+
 }  // namespace
 }  // namespace parallax::test

@@ -87,6 +87,11 @@ TEST_CASE("the trigger has a negated condition") {
   Kettle(Mistakes{{"HoldsAt(On(),time) -> Happens", "!HoldsAt(On(),time) -> Happens"}}).first();
 }
 
+TEST_CASE("the trigger demands another event") {
+  const Kettle cli(Mistakes{{"-> Happens(Boil(),time)", "-> Happens(Pour(),time)"}});
+  CHECK(mentions(cli.first(), "`Happens(Pour(),time)` becomes `Happens(Boil(),time)`"));
+}
+
 TEST_CASE("an effect is written under another event") {
   Kettle(Mistakes{{"Initiates(Fill(),Filled(),time)", "Initiates(Pour(),Filled(),time)"}}).first();
 }
