@@ -9,7 +9,7 @@
 
 namespace parallax::compiler {
 
-/// What the plan hands to the controller of an event, as text.
+/// The arguments that the plan hands to the controller of an event, as text.
 struct PlanCall {
   std::string event;
   std::map<std::string, std::string> arguments;  // "target.x" -> "0.985"

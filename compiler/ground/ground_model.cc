@@ -20,7 +20,7 @@ std::string row_line(const GroundModel& model, const EffectRow& row, const std::
   return line + '\n';
 }
 
-/// What the formula still asks for where `given` is true, if `given` is one of its conjuncts.
+/// The rest of the formula where `given` is true, if `given` is one of its conjuncts.
 FormulaId where(FormulaId given, FormulaId formula, FormulaStore& formulas) {
   if (given == formulas.truth()) return formula;
   if (formula == given) return formulas.truth();

@@ -120,8 +120,8 @@ class Grounder {
     bounds_have_changed();
   }
 
-  /// What is left out because of them must not be what they follow from: the axioms that have
-  /// preconditions and exclusions are grounded before.
+  /// Instances that are left out because of them must not be those that they follow from: the
+  /// axioms that have preconditions and exclusions are grounded before.
   void meetings() {
     grounder_.use_effects(rows_);
     for (std::size_t i = 0; i < typed_.axioms.size(); ++i) {

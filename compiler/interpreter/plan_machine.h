@@ -65,8 +65,8 @@ struct PlanGuard {
   std::uint32_t height = 0;  // of the stack when it began
 };
 
-/// What a branch of a `par` asks the model when it has its turn: a fluent of `holds`, a goal of
-/// `prolog`, the goal of an action, or which function carries out an action.
+/// The question of a branch of a `par` to the model when it has its turn: a fluent of `holds`, a
+/// goal of `prolog`, the goal of an action, or which function carries out an action.
 enum class TurnQuestion : std::uint8_t { kNone, kFluent, kProof, kAllProofs, kGoal, kGrounding };
 
 /// A perform, a `sleep`, a `wait-for` or a question that a branch of a `par` waits at for its turn.

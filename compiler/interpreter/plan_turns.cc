@@ -110,8 +110,8 @@ std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
   return first;
 }
 
-/// What the job goes on with: a question that a branch waited to ask, a perform that is to begin,
-/// or what the machine comes to.
+/// The next thing that the job does: a question that a branch waited to ask, a perform that is to
+/// begin, or what the machine comes to.
 PlanStop Explorer::next_stop(Job& job) {
   const auto asked = std::exchange(job.ask, std::nullopt);
   job.in_turn = asked.has_value();

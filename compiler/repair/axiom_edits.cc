@@ -32,7 +32,7 @@ class AxiomEdits {
     }
   }
 
-  /// What follows from an effect of whatever event: relevant if one of its fluents differed.
+  /// A consequence of an effect of whatever event: relevant if one of its fluents differed.
   void edit_ramification(std::size_t i) {
     const auto& form = subject_.forms[i];
     bool relevant = false;

@@ -75,7 +75,7 @@ std::int64_t PlanEnds::initial_states(const Trace& trace, const std::set<std::st
                         asked.contains(std::string(base::symbol_of(atom.name)));
     if (starts || counts) settings.push_back(atom.literal());
   });
-  // What every execution has does not count; `of` has told the solver what that is.
+  // Cuts that every execution has do not count; `of` has told the solver which they are.
   std::erase_if(settings, [&](Literal literal) {
     return session_.is_fixed(literal) || session_.is_fixed(~literal);
   });

@@ -116,7 +116,8 @@ TEST_CASE("without branches goals are asked where the action is performed") {
   CHECK(traces_of(cli, rule + "(set-on)" + noting("(ready :b)")) == Strings{"Set() Note(a) "});
   CHECK(traces_of(cli, rule + "(set-on)" + noting("(ready ?_)")) == Strings{"Set() "});
   CHECK(traces_of(cli, rule + noting("(never :a)")) == Strings{"Note(a) "});
-  // What is written into the designator is keywords, of which neither rules nor queries speak.
+  // Goals that are written into the designator are keywords, of which neither rules nor queries
+  // speak.
   CHECK(traces_of(cli, rule + "(perform (an action (type noting) (n a) (goal (on))))", "none") ==
         Strings{"Note(a) "});
   // Clauses of another number of arguments say nothing of it.

@@ -67,8 +67,8 @@ struct RepairInput {
   std::optional<StartConflict> start = std::nullopt;
   /// Random sequences of events that the proposals are held against (validation_runs).
   RandomSequences sequences = {};
-  /// What `sequences.choosing` say of proposals, and the effects of these on traces; shared by the
-  /// inputs of one call.
+  /// The answers of `sequences.choosing` about proposals, and the effects of these on traces;
+  /// shared by the inputs of one call.
   std::shared_ptr<SequenceMemo> memo = std::make_shared<SequenceMemo>();
 };
 

@@ -67,7 +67,7 @@ class StartSearch {
     int oddity = 0;
 
     bool is_right() const { return answer.has_wanted && answer.refused == 0; }
-    /// What is left of the conflict: first that no start of the world is one of the model's.
+    /// The rest of the conflict: first that no start of the world is one of the model's.
     std::pair<std::size_t, std::size_t> left() const { return {answer.missing, answer.refused}; }
     std::tuple<bool, std::size_t, std::size_t, int> rank() const {
       return {!is_right(), answer.missing, answer.refused, oddity};

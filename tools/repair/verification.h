@@ -33,8 +33,8 @@ struct TraceEffects {
   std::optional<bool> reaches;
 };
 
-/// What random sequences, and the traces, said of models by their texts: it stays the same while
-/// runs are added.
+/// The answers of random sequences, and of the traces, about models by their texts: it stays the
+/// same while runs are added.
 struct SequenceMemo {
   struct Said {
     std::size_t validated = 0;

@@ -1,4 +1,4 @@
-// What is left out because an event and a fluent never meet, and exclusions by blocks.
+// Instances that are left out because an event and a fluent never meet, and exclusions by blocks.
 
 #include "compiler/ground/meetings.h"
 

@@ -21,7 +21,7 @@ struct Desk : CliFixture {
   std::string path(const std::string& name) const {
     return std::filesystem::canonical(folder() / name).string();
   }
-  /// What `check` says of a file that stands on disk: code, line, column from 1.
+  /// The answers of `check` about a file that stands on disk: code, line, column from 1.
   std::multiset<std::string> checked(const std::string& root, const std::string& about) const {
     const auto ran = parallax({"check", path(root), "--json"});
     const auto document = Json::parse(ran.out);
