@@ -282,7 +282,10 @@ Admission Belief::observe(const Observation& observed, const std::vector<OneOfFl
 bool Belief::agrees(const Observation& observed) {
   if (!undecided_.empty()) return true;
   const auto filter = filter_of(observed);
-  if (!is_settled_ && !options_.unobserved.empty() && settle() != Admission::kAdmitted) return true;
+  if (!is_settled_ && !options_.unobserved.empty()) {
+    const auto settled = settle();
+    if (settled != Admission::kAdmitted) return settled == Admission::kUndecided;
+  }
   if (is_settled_) {
     return std::any_of(possible_.begin(), possible_.end(),
                        [&](StateId state) { return filter.admits(states_[state]); });
