@@ -23,7 +23,9 @@ std::string joined(const Strings& keys) {
 
 Executions executed_by_interpreter(const PlanCase& plan_case) {
   RuleWorld world(plan_case.model);
-  return execute_all(plan_case.plan_text(), world, plan_case.horizon, plan_case.by_turns);
+  constexpr std::size_t kMostRuns = 20'000;
+  return execute_all(plan_case.plan_text(), world, plan_case.horizon, plan_case.by_turns,
+                     kMostRuns);
 }
 
 /// Describes where the interpreter's executions differ from the solver's traces; empty if they
@@ -74,6 +76,9 @@ TEST_CASE("random plans in random models: what is executed is what is enumerated
     try {
       executed = executed_by_interpreter(plan_case);
       text = disagreement(plan_case, executed);
+    } catch (const std::length_error&) {
+      ++too_large;  // branches that ask and perform have very many orders
+      continue;
     } catch (const std::exception& error) {
       text = std::string("thrown: ") + error.what();
     }

@@ -1,10 +1,13 @@
 #include "tests/support/interpreter/interpreter.h"
 
+#include <stdexcept>
+
 #include "tests/support/interpreter/evaluator.h"
 
 namespace parallax::test {
 
-Executions execute_all(std::string_view plan, World& world, int horizon, bool by_turns) {
+Executions execute_all(std::string_view plan, World& world, int horizon, bool by_turns,
+                       std::size_t most) {
   const auto program = read_data(plan);
   Executions out;
   for (std::size_t start = 0; start < world.initial_states(); ++start) {
@@ -14,7 +17,7 @@ Executions execute_all(std::string_view plan, World& world, int horizon, bool by
       world.reset(start);
       Evaluator evaluator(program, world, horizon, picks, by_turns);
       const auto end = evaluator.run();
-      ++out.runs;
+      if (++out.runs > most) throw std::length_error("too many runs");
       if (end.kind == Ending::Kind::kHit) out.keys.insert(end.text);
       if (end.kind == Ending::Kind::kBeyond) out.beyond_horizon = true;
       if (end.kind == Ending::Kind::kFailed) out.failures.insert(end.text);

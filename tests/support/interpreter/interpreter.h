@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <set>
 #include <string>
 #include <string_view>
@@ -19,7 +20,9 @@ struct Executions {
 
 /// Executes the plan, form by form, on one state at a time. Throws std::runtime_error for forms
 /// that it does not know. The plan's bare top-level forms are run, or else its last function.
-/// `by_turns`: the branches of `par` and `pursue` in every order of their performs.
-Executions execute_all(std::string_view plan, World& world, int horizon, bool by_turns = false);
+/// `by_turns`: the branches of `par` and `pursue` in every order of their performs and questions.
+/// Throws std::length_error for more than `most` runs.
+Executions execute_all(std::string_view plan, World& world, int horizon, bool by_turns = false,
+                       std::size_t most = SIZE_MAX);
 
 }  // namespace parallax::test
