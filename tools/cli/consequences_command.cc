@@ -76,7 +76,11 @@ std::string text_of(const ConsequencesOptions& options, const compiler::Compiled
                     const ModelConsequences& found, const PlanReservations& reservations) {
   std::string out;
   const bool why = options.query.why;
-  const auto limits = words_of(reservations);
+  auto limits = words_of(reservations);
+  // Of `--until` one knows what was asked.
+  if (model.has_constraints && options.model.until.empty()) {
+    limits.insert(0, " that meet the scenario's constraints");
+  }
   if (!options.sometimes) {
     out += fmt::format("in all traces{}\n", limits) + facts_text(model, found, Extent::kAll, why);
   }
