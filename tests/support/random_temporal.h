@@ -10,8 +10,8 @@
 namespace parallax::test {
 
 /// A temporal formula that is worked out on its own tree, without parser, checker or model: one of
-/// the operators of docs/reference/model_language.md over its parts, or a state formula. Over two things
-/// A and B, fluents On(thing) and G(), events Push(thing). `thing` is the variable of its
+/// the operators of docs/reference/model_language.md over its parts, or a state formula. Over two
+/// things A and B, fluents On(thing) and G(), events Push(thing). `thing` is the variable of its
 /// quantifiers.
 struct TemporalFormula {
   std::string op;  // "always", "until", "!", "&", "[thing]", ...; empty: a state formula
