@@ -12,8 +12,8 @@
 namespace parallax::harness {
 namespace {
 
-constexpr std::int64_t kLeastRuns = 10;
-constexpr double kShare = 0.1;  // of the width that was drawn from
+constexpr std::int64_t kLeastEchoes = 10;
+constexpr double kEchoShare = 0.1;  // of the width that was drawn from
 
 std::optional<double> start_number(const Value& value) {
   if (const auto* real = std::get_if<double>(&value)) return *real;
@@ -51,8 +51,8 @@ std::vector<std::string> StartEcho::faults() const {
   std::vector<std::string> out;
   for (const auto& [name, variable] : variables_) {
     const double width = variable.high_drawn - variable.low_drawn;
-    if (variable.runs < kLeastRuns || width <= 0.0) continue;
-    if (std::sqrt(variable.squares / static_cast<double>(variable.runs)) <= kShare * width)
+    if (variable.runs < kLeastEchoes || width <= 0.0) continue;
+    if (std::sqrt(variable.squares / static_cast<double>(variable.runs)) <= kEchoShare * width)
       continue;
     out.push_back(
         fmt::format("`{}` was drawn from {:.4g} to {:.4g}, and by the first observations the "

@@ -84,15 +84,14 @@ struct SimulatorInfo {
   bool seeds = false;
   std::vector<Parameter> parameters;
   std::vector<std::string> actions;  // controllers that `act` accepts
-  /// Those of them that take no simulated time, as it says.
-  std::vector<std::string> instant_actions = {};
   double timestep_s = 0.0;
   /// The scene of its motion recordings, if it makes any.
   std::optional<RecordedScene> scene = {};
   /// Arguments by action, where the simulator tells them; other actions take any arguments.
   ActionArguments arguments = {};
-  std::vector<std::string> capabilities = {};  // "describe", "margins", "noise", "poses"
-  double min_real_time_factor = 0.0;           // how fast it simulates at least; 0: not said
+  std::vector<std::string> capabilities = {};     // "describe", "margins", "noise", "poses"
+  double min_real_time_factor = 0.0;              // how fast it simulates at least; 0: not said
+  std::vector<std::string> instant_actions = {};  // of `actions`: take no simulated time
 
   bool can(std::string_view capability) const;
   bool is_instant(std::string_view action) const;

@@ -77,7 +77,7 @@ std::string text_of(const ConsequencesOptions& options, const compiler::Compiled
   std::string out;
   const bool why = options.query.why;
   auto limits = words_of(reservations);
-  // Of `--until` one knows what was asked.
+  // Who gives `--until` knows it.
   if (model.has_constraints && options.model.until.empty()) {
     limits.insert(0, " that meet the scenario's constraints");
   }
