@@ -17,7 +17,7 @@ Command lsp_command() {
       "of a scenario is started. docs/guide/models.md says how editors are told about it.\n"
       "Exit codes: 0 the editor ended it, 1 the editor went away.");
   return {std::move(command), [](Invocation& invocation) {
-            const int code = serve_editor(STDIN_FILENO, STDOUT_FILENO);
+            const int code = lsp::serve_editor(STDIN_FILENO, STDOUT_FILENO);
             invocation.answered();
             return code;
           }};

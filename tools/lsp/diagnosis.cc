@@ -7,7 +7,7 @@
 #include "tools/app/context.h"
 #include "tools/app/file_check.h"
 
-namespace parallax::tools {
+namespace parallax::tools::lsp {
 namespace {
 
 std::string normal(const std::string& path) {
@@ -104,4 +104,4 @@ std::optional<EditorFix> fix_of(const EditorMessage& message, const std::string&
   return std::nullopt;
 }
 
-}  // namespace parallax::tools
+}  // namespace parallax::tools::lsp

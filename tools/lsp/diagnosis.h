@@ -9,7 +9,7 @@
 
 #include "compiler/base/open_texts.h"
 
-namespace parallax::tools {
+namespace parallax::tools::lsp {
 
 /// One message about a file as an editor shows it; offsets are bytes of the text that was checked.
 struct EditorMessage {
@@ -34,4 +34,4 @@ std::optional<std::map<std::string, std::vector<EditorMessage>>> checked(
 /// period"), where it can be told from the text; none for advice that somebody has to think about.
 std::optional<EditorFix> fix_of(const EditorMessage& message, const std::string& text);
 
-}  // namespace parallax::tools
+}  // namespace parallax::tools::lsp

@@ -9,7 +9,7 @@
 
 #include "compiler/base/file_io.h"
 
-namespace parallax::tools {
+namespace parallax::tools::lsp {
 namespace {
 
 constexpr std::size_t kMostHeader = 4096;
@@ -101,4 +101,4 @@ bool write_frame(int descriptor, std::string_view message) {
   return base::write_all(descriptor, header) && base::write_all(descriptor, message);
 }
 
-}  // namespace parallax::tools
+}  // namespace parallax::tools::lsp

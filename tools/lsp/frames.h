@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace parallax::tools {
+namespace parallax::tools::lsp {
 
 /// Messages of the base protocol of language servers: a header with `Content-Length`, an empty
 /// line, so many bytes.
@@ -33,4 +33,4 @@ class FrameReader {
 /// False if nobody reads any more.
 bool write_frame(int descriptor, std::string_view message);
 
-}  // namespace parallax::tools
+}  // namespace parallax::tools::lsp

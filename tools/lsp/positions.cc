@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace parallax::tools {
+namespace parallax::tools::lsp {
 namespace {
 
 /// Bytes of the character that begins here, at most as many as there are.
@@ -108,4 +108,4 @@ std::string uri_of_path(std::string_view path) {
   return uri;
 }
 
-}  // namespace parallax::tools
+}  // namespace parallax::tools::lsp

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace parallax::tools {
+namespace parallax::tools::lsp {
 
 /// A place as editors count it: from 0, columns in UTF-16 units or, where both sides agreed on it,
 /// in bytes.
@@ -38,4 +38,4 @@ class Positions {
 std::string path_of_uri(std::string_view uri);
 std::string uri_of_path(std::string_view path);
 
-}  // namespace parallax::tools
+}  // namespace parallax::tools::lsp

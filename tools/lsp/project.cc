@@ -19,7 +19,7 @@
 #include "compiler/syntax/lexer.h"
 #include "compiler/syntax/parser.h"
 
-namespace parallax::tools {
+namespace parallax::tools::lsp {
 namespace {
 
 namespace fs = std::filesystem;
@@ -384,4 +384,4 @@ std::vector<std::string> NameMap::effects(const DeclaredName& name) const {
   return out;
 }
 
-}  // namespace parallax::tools
+}  // namespace parallax::tools::lsp

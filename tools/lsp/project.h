@@ -13,7 +13,7 @@ class Ast;
 struct Statement;
 }  // namespace parallax::compiler
 
-namespace parallax::tools {
+namespace parallax::tools::lsp {
 
 /// The text of a file as it is edited, or as it lies on disk; none where it cannot be read.
 using TextOf = std::function<std::optional<std::string>(const std::string& path)>;
@@ -81,4 +81,4 @@ class NameMap {
 
 std::string_view to_string(NameKind kind);
 
-}  // namespace parallax::tools
+}  // namespace parallax::tools::lsp

@@ -27,7 +27,7 @@
 #include "tools/lsp/positions.h"
 #include "tools/lsp/project.h"
 
-namespace parallax::tools {
+namespace parallax::tools::lsp {
 namespace {
 
 using Json = nlohmann::json;
@@ -704,4 +704,4 @@ class EditorServer {
 
 int serve_editor(int in, int out) { return EditorServer(in, out).run(); }
 
-}  // namespace parallax::tools
+}  // namespace parallax::tools::lsp

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace parallax::tools {
+namespace parallax::tools::lsp {
 
 /// A language server (Microsoft 2022, Language Server Protocol 3.17) for models, plans' binding
 /// tables and scenarios, which speaks on two descriptors until its client ends it or goes away.
@@ -8,4 +8,4 @@ namespace parallax::tools {
 /// sent what is no message.
 int serve_editor(int in, int out);
 
-}  // namespace parallax::tools
+}  // namespace parallax::tools::lsp
