@@ -13,13 +13,13 @@ namespace {
 
 using SchemaJson = nlohmann::ordered_json;
 
-constexpr std::string_view kDefinitions = "common";  // the file of what several schemas use
-constexpr std::string_view kReference = "#/$defs/";
-constexpr std::string_view kEnding = ".json";
+constexpr std::string_view kSchemaDefinitions = "common";  // the file of what several schemas use
+constexpr std::string_view kSchemaReference = "#/$defs/";
+constexpr std::string_view kSchemaEnding = ".json";
 
 std::optional<SchemaJson> schema_file(std::string_view name) {
   for (const auto& file : schema_files()) {
-    if (file.path.substr(0, file.path.size() - kEnding.size()) != name) continue;
+    if (file.path.substr(0, file.path.size() - kSchemaEnding.size()) != name) continue;
     auto json = base::parse_ordered_json(file.text);
     PARALLAX_REQUIRE(json.is_object(), "a schema in tools/schema/documents is a JSON object");
     return json;
@@ -39,7 +39,7 @@ void find_references(const SchemaJson& schema, const SchemaJson& definitions,
     }
     const auto* reference = base::json_member(json, "$ref");
     if (reference == nullptr || !reference->is_string()) continue;
-    const auto name = reference->get<std::string>().substr(kReference.size());
+    const auto name = reference->get<std::string>().substr(kSchemaReference.size());
     PARALLAX_REQUIRE(definitions.contains(name), "a schema refers to what common.json defines");
     if (names.insert(name).second) open.push_back(&definitions.at(name));
   }
@@ -50,8 +50,8 @@ void find_references(const SchemaJson& schema, const SchemaJson& definitions,
 std::vector<std::string> schema_names() {
   std::vector<std::string> out;
   for (const auto& file : schema_files()) {
-    out.emplace_back(file.path.substr(0, file.path.size() - kEnding.size()));
-    if (out.back() == kDefinitions) out.pop_back();
+    out.emplace_back(file.path.substr(0, file.path.size() - kSchemaEnding.size()));
+    if (out.back() == kSchemaDefinitions) out.pop_back();
   }
   std::sort(out.begin(), out.end());
   return out;
@@ -75,10 +75,10 @@ std::string schema_name(std::string_view command) {
 }
 
 std::optional<std::string> schema_text(std::string_view name) {
-  if (name == kDefinitions) return std::nullopt;
+  if (name == kSchemaDefinitions) return std::nullopt;
   const auto schema = schema_file(name);
   if (!schema) return std::nullopt;
-  const auto definitions = schema_file(kDefinitions).value();
+  const auto definitions = schema_file(kSchemaDefinitions).value();
   SchemaJson out = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                     {"$id", "urn:parallax:schema:" + std::string(name) + ":" +
                                 schema->at("version").get<std::string>()}};
