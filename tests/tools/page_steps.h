@@ -7,12 +7,12 @@ namespace parallax::test {
 
 /// One step of a page of the documentation: a file to write, or a command with the lines below it.
 struct PageStep {
-  std::string file;
-  std::string command;
-  std::vector<std::string> lines;
-  int exit_code = -1;   // as the page says; -1: 0 or 1
-  std::string not_run;  // why the command is not run here, or which test runs it
-  int line = 0;         // of the page, from 1
+  std::string file = {};
+  std::string command = {};
+  std::vector<std::string> lines = {};
+  int exit_code = -1;        // as the page says; -1: 0 or 1
+  std::string not_run = {};  // why the command is not run here, or which test runs it
+  int line = 0;              // of the page, from 1
 };
 
 /// The steps of docs/PAGE, in their order. Blocks are indented by four blanks.
