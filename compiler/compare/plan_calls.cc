@@ -16,11 +16,11 @@ std::string value_text(const PlanValue& value) {
 
 }  // namespace
 
-std::vector<PlanCall> plan_calls(const CompiledModel& model) {
-  std::vector<PlanCall> out;
+std::vector<HandedCall> plan_calls(const CompiledModel& model) {
+  std::vector<HandedCall> out;
   std::set<std::pair<std::string, std::map<std::string, std::string>>> seen;
   for (const auto& perform : model.plan) {
-    PlanCall call{perform.event, {}, {perform.place.file, perform.place.begin.line}};
+    HandedCall call{perform.event, {}, {perform.place.file, perform.place.begin.line}};
     for (const auto& [name, value] : perform.arguments) {
       call.arguments.emplace(name, value_text(value));
     }
@@ -29,10 +29,10 @@ std::vector<PlanCall> plan_calls(const CompiledModel& model) {
   return out;
 }
 
-std::map<std::string, std::string> call_values(const std::vector<PlanCall>& calls,
+std::map<std::string, std::string> call_values(const std::vector<HandedCall>& calls,
                                                const std::string& event) {
   std::set<std::string> names;
-  std::vector<const PlanCall*> of_event;
+  std::vector<const HandedCall*> of_event;
   for (const auto& call : calls) {
     if (call.event != event) continue;
     of_event.push_back(&call);

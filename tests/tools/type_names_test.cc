@@ -33,7 +33,7 @@ std::vector<std::string> types_of(const fs::path& header) {
   static const std::regex opening(R"(namespace ([\w:]+) \{)");
   // Neither a class of a class nor a specialisation is a new name.
   static const std::regex type(
-      R"((?:template <.*> )?(?:class|struct|enum class|enum|union) (\w+)(?![\w<]|::).*)");
+      R"((?:template <.*> )?(?:class|struct|enum class|enum|union) (?:[A-Z]+_API )?(\w+)(?![\w<]|::).*)");
   std::vector<std::string> names;
   std::string space, line;
   std::ifstream in(header);

@@ -179,7 +179,7 @@ std::vector<std::string> logistics_goals(int packages, int places) {
 
 }  // namespace
 
-Task grid_task(int width, int robots, int horizon) {
+FamilyTask grid_task(int width, int robots, int horizon) {
   auto world =
       fmt::format(kGridWorld, robots, width, horizon, numbered_names("R", robots), width * width);
   for (int robot = 1; robot <= robots; ++robot) {
@@ -190,13 +190,13 @@ Task grid_task(int width, int robots, int horizon) {
   return {world, all_at(goals, "time"), with_goal(world, goals, horizon)};
 }
 
-Task hanoi_task(int discs, int horizon) {
+FamilyTask hanoi_task(int discs, int horizon) {
   const auto world = fmt::format(kHanoiWorld, discs, horizon);
   const auto goals = hanoi_goals(discs);
   return {world, all_at(goals, "time"), with_goal(world, goals, horizon)};
 }
 
-Task logistics_task(int packages, int trucks, int places, int horizon) {
+FamilyTask logistics_task(int packages, int trucks, int places, int horizon) {
   auto world = fmt::format(kLogisticsWorld, packages, trucks, places, horizon,
                            numbered_names("Package", packages), numbered_names("Truck", trucks),
                            numbered_names("Place", places));

@@ -70,23 +70,23 @@ std::string falling_model(int horizon);
 
 /// A world without a goal, the goal as a formula over `time`, and the world with the goal at its
 /// last timepoint.
-struct Task {
+struct FamilyTask {
   std::string world, goal, model;
 };
 
 /// `robots` robots on a square grid of `width` times `width` cells, each to go to the opposite
 /// cell. All move at once; no two meet. At most as many robots as cells.
-Task grid_task(int width, int robots, int horizon);
+FamilyTask grid_task(int width, int robots, int horizon);
 
 /// The towers of Hanoi; the shortest way takes 2^discs - 1 steps.
-Task hanoi_task(int discs, int horizon);
+FamilyTask hanoi_task(int discs, int horizon);
 
 /// `packages` packages, each to be brought from one place to another by one of `trucks` trucks
 /// that drive between any two of `places` (at least 2) and carry one package each.
-Task logistics_task(int packages, int trucks, int places, int horizon);
+FamilyTask logistics_task(int packages, int trucks, int places, int horizon);
 
 /// The task of a name of these three families, `grid_6_5_10`; nullopt for other names.
-std::optional<Task> family_task(std::string_view name);
+std::optional<FamilyTask> family_task(std::string_view name);
 
 /// The model of a name such as `robot_4_2_8`, `robot_6_4_m1` (slack -1), `lamps_4_6`,
 /// `roaming_6_4_30`, `distant_4_6`, `pigeon_9_8`, `chain_200`, `bankproj_4_100_5_20`,

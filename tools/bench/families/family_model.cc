@@ -18,7 +18,7 @@ struct Family {
   bool (*fits)(const Parameters&) = nullptr;
   std::string (*model)(const Parameters&) = nullptr;
   std::string (*program)(const Parameters&) = nullptr;
-  Task (*task)(const Parameters&) = nullptr;  // if it has a goal that can be left out
+  FamilyTask (*task)(const Parameters&) = nullptr;  // if it has a goal that can be left out
 };
 
 using P = const Parameters&;
@@ -123,7 +123,7 @@ std::optional<std::string> family_program(std::string_view name) {
   return found->first->program(found->second);
 }
 
-std::optional<Task> family_task(std::string_view name) {
+std::optional<FamilyTask> family_task(std::string_view name) {
   const auto found = parsed(name);
   if (!found || found->first->task == nullptr) return std::nullopt;
   return found->first->task(found->second);

@@ -1,5 +1,5 @@
 """A world without physics as a class: a robot that drives on a floor with a wall that has a door, and
-a crate that it carries. Run it in place of the simulator of kinematic_2d.yaml (docs/adapters.md):
+a crate that it carries. Run it in place of the simulator of kinematic_2d.yaml (docs/guide/simulators.md):
 
     simulator: {command: [python3, kinematic_2d.py]}
 """

@@ -22,7 +22,7 @@ class Diagnostic:
     behind the last one. A diagnostic about no place has no line, one about no file no path."""
 
     severity: str  # "error" or "warning"
-    code: str  # "E2104"; docs/diagnostics.md lists them
+    code: str  # "E2104"; docs/reference/diagnostics.md lists them
     message: str
     path: Optional[str] = None
     line: Optional[int] = None

@@ -35,7 +35,7 @@ class Conflict:
 @dataclass(frozen=True)
 class Explanation:
     """Why a model has no trace, or cannot follow a run. Without `conflicts` it can. `cause` is
-    `always`, `region`, `random` or `simulator` (docs/explanations.md)."""
+    `always`, `region`, `random` or `simulator` (docs/guide/repair.md)."""
 
     satisfiable: bool
     conflicts: Tuple[Conflict, ...] = ()

@@ -15,7 +15,7 @@ Value = Union[float, bool, str]
 
 @dataclass(frozen=True)
 class Sample:
-    """One simulation (docs/samples.md). `start` has the variables of its start: places in metres,
+    """One simulation (docs/guide/running.md). `start` has the variables of its start: places in metres,
     angles in radians. `drawn` is False for starts that a search chose."""
 
     trace: int

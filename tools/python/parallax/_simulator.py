@@ -1,4 +1,4 @@
-"""Turns a class into a simulator behind the pipe protocol (docs/simulator_protocol.md).
+"""Turns a class into a simulator behind the pipe protocol (docs/reference/protocol.md).
 
 The protocol itself is spoken by `parallax_adapter`, which also works without this package.
 """

@@ -22,7 +22,7 @@ class Timepoint:
 @dataclass(frozen=True)
 class Trace:
     """One execution. `predicates` are the true atoms of user predicates; nothing is known of the
-    `undetermined` atoms (docs/trace_formats.md). `ended` tells how a plan ended."""
+    `undetermined` atoms (docs/reference/formats.md). `ended` tells how a plan ended."""
 
     number: int
     timepoints: Tuple[Timepoint, ...]
