@@ -292,7 +292,7 @@ TEST_CASE("a temporal property of which no instance says anything is refused") {
     CAPTURE(property);
     const auto result =
         cli.parallax({"verify", "drawer.e", "--horizon", "4", "--property", property});
-    CHECK(result.code == 2);
+    CHECK(result.code == 3);
     CHECK(says(result.err, "error[E3004]"));
   }
   const auto fine = cli.parallax(

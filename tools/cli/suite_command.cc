@@ -424,7 +424,7 @@ Command suite_command() {
   command.heading("History");
   command
       .option("--history", options->history,
-              "Append outcomes, rates and times to this file, and say what changed "
+              "Append outcomes, rates and times to this file; tell changes "
               "(docs/reference/suites.md)")
       .file();
   command

@@ -405,8 +405,7 @@ Command verify_command() {
   add_cubes_option(command, options->jobs);
   command
       .option("--ledger", options->ledger,
-              "Also say which known discrepancies of this file the answer rests on "
-              "(docs/reference/suites.md)")
+              "Known discrepancies that the answer may rest on (docs/reference/suites.md)")
       .file({"yaml"});
   command.flag("--check", options->check,
                "Evaluate the model on the trace by independent means; exit 5 if it differs");
