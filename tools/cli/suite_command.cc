@@ -335,7 +335,8 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
   const LastPasses passes(folder);
   Reuse reuse(record, cache, passes, voice);
   if (options.resume) {
-    reuse.resume(earlier->cases, identity.permits_more_than(earlier->identity));
+    reuse.resume(earlier->cases, identity.permits_more_than(earlier->identity),
+                 identity.allow_commands);
   }
   if (caches) reuse.look_up(*verified);
   if (!record.save(sink)) return 0;

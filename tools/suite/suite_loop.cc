@@ -100,7 +100,7 @@ std::string line_of(const SuiteCase& one, const CaseResult& result, bool color) 
   return line;
 }
 
-void Reuse::resume(const StoredCases& earlier, bool permits_more) {
+void Reuse::resume(const StoredCases& earlier, bool permits_more, bool starts_commands) {
   for (std::size_t i = 0; i < record_.cases().size(); ++i) {
     const auto at = earlier.find(record_.cases()[i].name());
     if (!is_open(i) || at == earlier.end()) continue;
@@ -110,7 +110,7 @@ void Reuse::resume(const StoredCases& earlier, bool permits_more) {
     if (permits_more && result.outcome == Outcome::kError) continue;
     // Nobody knows what the program of another simulator reads: a module that it imports may have
     // changed.
-    if (!record_.cases()[i].command.empty()) continue;
+    if (starts_commands && !record_.cases()[i].command.empty()) continue;
     // The expectation may have changed although no file that was read has.
     if (at->second.one.revision != record_.cases()[i].revision) continue;
     if (!finished || result.inputs.empty() || !hashes_.unchanged(result.inputs)) continue;

@@ -34,8 +34,9 @@ class Reuse {
       : record_(record), cache_(cache), passes_(passes), voice_(std::move(voice)) {}
 
   /// Takes over the results of an interrupted suite whose files have not changed. If `permits_more`
-  /// than in that suite, cases without an answer are run again: that may have been refused.
-  void resume(const StoredCases& earlier, bool permits_more);
+  /// than in that suite, cases without an answer are run again: that may have been refused. If this
+  /// suite `starts_commands`, so are cases of other simulators: nobody knows what those read.
+  void resume(const StoredCases& earlier, bool permits_more, bool starts_commands);
   /// Takes over cached passes, which then count as the last ones of their cases; `verified_share`
   /// of them, from 0 to 1, is run all the same, those verified longest ago first.
   void look_up(double verified_share);

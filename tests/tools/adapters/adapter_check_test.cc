@@ -223,7 +223,7 @@ TEST_CASE("simulators without a fault are said to have none, and what they suppo
     const auto report = Json::parse(result.out);
     CHECK(report.at("findings") == Json::array());
     CHECK(report.at("complete") == true);
-    CHECK(report.at("checks").size() == 12);
+    CHECK(report.at("checks").size() == 13);
     for (const auto& check : report.at("checks")) CHECK(check.at("state") == "ok");
     CHECK(report.at("measured").at("determinism") == "bitwise");
     CHECK(report.at("measured").at("largest_start_deviation") == 0.0);
