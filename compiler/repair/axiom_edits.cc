@@ -5,6 +5,7 @@
 #include "compiler/repair/edit_subject.h"
 #include "compiler/repair/idle_condition.h"
 #include "compiler/repair/number_term.h"
+#include "compiler/repair/other_term.h"
 #include "compiler/syntax/printer.h"
 
 namespace parallax::compiler {
@@ -58,7 +59,7 @@ class AxiomEdits {
     if (fluent.kind != NodeKind::kApply) return;
     const std::string name(tree.name(fluent)), kind(tree.name(tree[effect]));
     if (!subject_.fluents.contains(name)) return;
-    const auto variables = sorted(form.variables, form.time);
+    const auto variables = variables_of(form, subject_.typed);
     for (const auto& event : subject_.events) {
       const auto symbol = subject_.typed.find_symbol(event);
       if (event == form.event_symbol || !symbol ||
@@ -103,16 +104,6 @@ class AxiomEdits {
     return subject_.scope.idle.contains(event) &&
            std::count_if(subject_.forms.begin(), subject_.forms.end(),
                          [&](const auto& form) { return form.event_symbol == event; }) == 1;
-  }
-
-  std::vector<SortedVariable> sorted(const std::vector<std::string>& names,
-                                     const std::string& time) const {
-    std::vector<SortedVariable> out;
-    for (const auto& name : names) {
-      const auto sort = sort_of_variable(subject_.typed, name);
-      if (sort && name != time) out.push_back({name, *sort});
-    }
-    return out;
   }
 
   std::vector<std::string> event_arguments(const AxiomForm& form) const {
@@ -182,7 +173,7 @@ class AxiomEdits {
   /// Adds conditions under which the axiom would not have applied in some step.
   void narrow(std::size_t i) {
     const auto& form = subject_.forms[i];
-    const auto variables = sorted(form.variables, form.time);
+    const auto variables = variables_of(form, subject_.typed);
     const auto arguments = event_arguments(form);
     for (const auto& literal : condition_literals(subject_.typed, variables, kMostLiterals)) {
       const bool of_any = form.kind == AxiomForm::Kind::kRamification;
@@ -232,7 +223,7 @@ class AxiomEdits {
       } else if (node.kind == NodeKind::kApply) {
         replace(i, conjunct, "!" + text, 2);
       }
-      const auto variables = sorted(form.variables, form.time);
+      const auto variables = variables_of(form, subject_.typed);
       for (const auto& [other, oddity] :
            other_comparisons(ast(form), conjunct, subject_.typed, variables)) {
         replace(i, conjunct, other, oddity);
@@ -241,7 +232,8 @@ class AxiomEdits {
       auto inner = negated ? ast(form).child(node, 0) : conjunct;
       if (ast(form)[inner].kind == NodeKind::kApply &&
           ast(form).name(ast(form)[inner]) == "HoldsAt") {
-        for (const auto& other : other_terms(form, ast(form).child(ast(form)[inner], 0))) {
+        for (const auto& other :
+             other_terms(subject_, form, ast(form).child(ast(form)[inner], 0))) {
           ConditionLiteral literal{ConditionLiteral::Kind::kFluent, negated, other.symbol, {}};
           for (const auto& name : other.arguments) {
             const bool term = name.find_first_of("+-") != std::string::npos;
@@ -271,7 +263,7 @@ class AxiomEdits {
           atom(kind == "Initiates" ? "Terminates" : "Initiates", print_formula(tree, parts.fluent)),
           2);
     }
-    for (const auto& other : other_terms(form, parts.fluent)) {
+    for (const auto& other : other_terms(subject_, form, parts.fluent)) {
       replace(i, reason, atom(kind, other.text()), other.oddity + 1);
     }
   }
@@ -325,13 +317,13 @@ class AxiomEdits {
               came_reversed(form, effect) ? 1 : 1 + kDropSuperfluous);
     }
     if (differs && tree[parts.fluent].kind == NodeKind::kApply) {
-      for (const auto& other : other_terms(form, parts.fluent)) {
+      for (const auto& other : other_terms(subject_, form, parts.fluent)) {
         replace(i, effect, atom(kind, event, other.text()), other.oddity);
       }
-      for (const auto& [e, f] : exchanged(form, parts)) {
+      for (const auto& [e, f] : exchanged(ast(form), parts, subject_.typed)) {
         of_other_arguments(i, effect, atom(kind, e, f), 2);
       }
-      for (const auto& other : other_terms(form, parts.event)) {
+      for (const auto& other : other_terms(subject_, form, parts.event)) {
         of_other_arguments(i, effect, atom(kind, other.text(), fluent), other.oddity + 1);
       }
     }
@@ -344,7 +336,7 @@ class AxiomEdits {
       if (tree[parts.fluent].kind == NodeKind::kApply && tree.name(tree[parts.fluent]) == name) {
         continue;
       }
-      const auto variables = sorted(form.variables, form.time);
+      const auto variables = variables_of(form, subject_.typed);
       for (const auto& [term, oddity] :
            terms(name, subject_.typed.symbols[*symbol].arguments, variables)) {
         replace(i, effect, atom(kind, event, term), instead + oddity);
@@ -423,95 +415,6 @@ class AxiomEdits {
       if (out.size() > kMostLiterals) return {};
     }
     for (auto& [text, oddity] : out) text = symbol + "(" + text + ")";
-    return out;
-  }
-
-  struct OtherTerm {
-    std::string symbol;
-    std::vector<std::string> arguments;
-    int oddity = 0;
-
-    std::string text() const {
-      std::string out = symbol;
-      for (std::size_t i = 0; i < arguments.size(); ++i) out += (i == 0 ? "(" : ",") + arguments[i];
-      return out + ")";
-    }
-  };
-  /// The term with one argument that is another one.
-  std::vector<OtherTerm> other_terms(const AxiomForm& form, NodeId term) const {
-    const auto& tree = ast(form);
-    const auto& node = tree[term];
-    std::vector<OtherTerm> out;
-    if (node.kind != NodeKind::kApply) return out;
-    const auto symbol = subject_.typed.find_symbol(tree.name(node));
-    if (!symbol || subject_.typed.symbols[*symbol].arguments.size() != node.child_count) return out;
-    std::vector<std::string> arguments;
-    for (std::uint32_t i = 0; i < node.child_count; ++i) {
-      arguments.push_back(print_formula(tree, tree.child(node, i)));
-    }
-    const std::string name_of(tree.name(node));
-    for (std::size_t i = 0; i < arguments.size(); ++i) {
-      const auto sort = subject_.typed.symbols[*symbol].arguments[i];
-      auto with = arguments;
-      for (const auto& variable : sorted(form.variables, form.time)) {
-        if (variable.name == arguments[i] || !subject_.typed.sorts_overlap(variable.sort, sort))
-          continue;
-        with[i] = variable.name;
-        out.push_back({name_of, with, 1});
-        if (!is_number_sort(subject_.typed, variable.sort)) continue;
-        for (const auto* step : {"+1", "-1"}) {
-          with[i] = variable.name + step;
-          if (with[i] != arguments[i]) out.push_back({name_of, with, 2});
-        }
-      }
-      const auto constants = constants_of(subject_.typed, sort);
-      if (constants.size() > kMostLiterals) continue;
-      for (const auto& name : constants) {
-        if (name == arguments[i]) continue;
-        with[i] = name;
-        out.push_back({name_of, with, 3});
-      }
-      for (std::size_t j = i + 1; j < arguments.size(); ++j) {
-        auto swapped = arguments;
-        std::swap(swapped[i], swapped[j]);
-        if (swapped != arguments &&
-            subject_.typed.sorts_overlap(sort, subject_.typed.symbols[*symbol].arguments[j])) {
-          out.push_back({name_of, swapped, 1});
-        }
-      }
-    }
-    return out;
-  }
-
-  /// Event and fluent with one argument of each exchanged.
-  std::vector<std::pair<std::string, std::string>> exchanged(const AxiomForm& form,
-                                                             const EffectParts& parts) const {
-    const auto& tree = ast(form);
-    std::vector<std::pair<std::string, std::string>> out;
-    const auto arguments = [&](NodeId term) {
-      std::vector<std::string> names;
-      for (std::uint32_t i = 0; i < tree[term].child_count; ++i) {
-        names.push_back(print_formula(tree, tree.child(tree[term], i)));
-      }
-      return names;
-    };
-    const auto print = [&](NodeId term, const std::vector<std::string>& with) {
-      std::string text(tree.name(tree[term]));
-      text += "(";
-      for (std::size_t i = 0; i < with.size(); ++i) text += (i == 0 ? "" : ",") + with[i];
-      return text + ")";
-    };
-    const auto event = arguments(parts.event), fluent = arguments(parts.fluent);
-    for (std::size_t i = 0; i < event.size(); ++i) {
-      for (std::size_t j = 0; j < fluent.size(); ++j) {
-        const auto a = sort_of_variable(subject_.typed, event[i]),
-                   b = sort_of_variable(subject_.typed, fluent[j]);
-        if (event[i] == fluent[j] || !a || !b || !subject_.typed.sorts_overlap(*a, *b)) continue;
-        auto e = event, f = fluent;
-        std::swap(e[i], f[j]);
-        out.emplace_back(print(parts.event, e), print(parts.fluent, f));
-      }
-    }
     return out;
   }
 

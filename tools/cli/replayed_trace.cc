@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/base/json.h"
+#include "compiler/base/words.h"
 
 namespace parallax::tools {
 
@@ -57,6 +58,34 @@ std::string replay_document(const ReplayedTraces& replay, const base::SourceFile
       {"complete", replay.finished},
       {"list", std::move(list)}};
   return base::json_text(document) + '\n';
+}
+
+int answer_replay(const ModelOptions& model, const ReplayTracesOptions& options,
+                  Invocation& invocation) {
+  const bool as_json = invocation.options().json;
+  const auto& files = invocation.files();
+  const auto say = [&](const ReplayedTrace& trace) {
+    if (!as_json) invocation.result(replayed_text(trace, files));
+  };
+  const auto result = replay_traces(model, options, say, invocation);
+  if (!result) return 0;
+  if (!result->closed) {
+    invocation.remark("the file does not say how its list ended: there may be more traces");
+  }
+  if (invocation.stopped()) invocation.remark("stopped before the last trace");
+  if (as_json) {
+    invocation.document(replay_document(*result, files));
+  } else {
+    const auto open =
+        result->undecided > 0 ? fmt::format("{} undecided, ", result->undecided) : std::string();
+    invocation.result(fmt::format(
+        "{} replayed, {}: {} agree, {} fail, {}{} checked\n", base::counted(result->seen, "trace"),
+        result->finished ? "complete" : "stopped",
+        result->seen - result->failed - result->undecided, result->failed, open, result->checked));
+  }
+  if (!result->sound) return 5;
+  if (result->failed > 0) return 1;
+  return result->finished && result->undecided == 0 ? 0 : 4;
 }
 
 }  // namespace parallax::tools

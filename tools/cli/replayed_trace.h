@@ -4,6 +4,8 @@
 
 #include "compiler/base/source_file.h"
 #include "tools/app/traces_replay.h"
+#include "tools/cli/command.h"
+#include "tools/cli/shared_options.h"
 
 namespace parallax::tools {
 
@@ -11,5 +13,8 @@ namespace parallax::tools {
 std::string replayed_text(const ReplayedTrace& trace, const base::SourceFiles& files);
 /// The whole answer as one JSON object, with the end of the line.
 std::string replay_document(const ReplayedTraces& replay, const base::SourceFiles& files);
+/// Answers `traces --replay`: a line for each trace as it is done, or the document. The exit code.
+int answer_replay(const ModelOptions& model, const ReplayTracesOptions& options,
+                  Invocation& invocation);
 
 }  // namespace parallax::tools

@@ -208,33 +208,6 @@ bool is_usable(const TracesOptions& options, Invocation& invocation) {
   return true;
 }
 
-int replay(const TracesOptions& options, Invocation& invocation) {
-  const bool as_json = invocation.options().json;
-  const auto& files = invocation.files();
-  const auto say = [&](const ReplayedTrace& trace) {
-    if (!as_json) invocation.result(replayed_text(trace, files));
-  };
-  const auto result = replay_traces(options.model, options.replay, say, invocation);
-  if (!result) return 0;
-  if (!result->closed) {
-    invocation.remark("the file does not say how its list ended: there may be more traces");
-  }
-  if (invocation.stopped()) invocation.remark("stopped before the last trace");
-  if (as_json) {
-    invocation.document(replay_document(*result, files));
-  } else {
-    const auto open =
-        result->undecided > 0 ? fmt::format("{} undecided, ", result->undecided) : std::string();
-    invocation.result(fmt::format(
-        "{} replayed, {}: {} agree, {} fail, {}{} checked\n", base::counted(result->seen, "trace"),
-        result->finished ? "complete" : "stopped",
-        result->seen - result->failed - result->undecided, result->failed, open, result->checked));
-  }
-  if (!result->sound) return 5;
-  if (result->failed > 0) return 1;
-  return result->finished && result->undecided == 0 ? 0 : 4;
-}
-
 using StartTime = std::chrono::steady_clock::time_point;
 double seconds_since(StartTime start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -412,7 +385,7 @@ int list_best(const TracesOptions& options, compiler::Compilation& compilation, 
 
 int list_traces(const TracesOptions& options, Invocation& invocation) {
   const auto start = std::chrono::steady_clock::now();
-  if (!options.replay.file.empty()) return replay(options, invocation);
+  if (!options.replay.file.empty()) return answer_replay(options.model, options.replay, invocation);
   if (!is_usable(options, invocation)) return 0;
   if (!check_listing(options.model, options.listing, invocation.sink())) return 0;
   auto compilation = compile_models(options.model, invocation);
