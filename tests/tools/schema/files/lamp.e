@@ -1,5 +1,5 @@
 sort lamp
-lamp A,B
+lamp A, B
 
 fluent On(lamp)
 event Press(lamp)
