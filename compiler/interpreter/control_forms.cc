@@ -71,7 +71,7 @@ void form_par(FormCompiler& c, DatumId form, FormItems items) {
     return branches_by_turns(c, form, items.subspan(1), false);
   }
   if (items.size() > 2) in_order(c, form);
-  if (items.size() < 2) return c.refuse(form, "without branches it waits for nothing and fails");
+  if (items.size() < 2) return c.always_fails(form, "without branches it waits for nothing");
   for (std::size_t i = 1; i < items.size(); ++i) {
     task(c, items[i], items.subspan(i, 1));
     if (i > 1) c.code.drop(items[i]);  // the value is that of the first branch
@@ -101,7 +101,7 @@ void form_try_all(FormCompiler& c, DatumId form, FormItems items) {
 /// In written order the first branch ends before the others have performed anything. They are
 /// checked all the same.
 void form_pursue(FormCompiler& c, DatumId form, FormItems items) {
-  if (items.size() < 2) return c.refuse(form, "without branches it waits for nothing and fails");
+  if (items.size() < 2) return c.always_fails(form, "without branches it waits for nothing");
   if (items.size() > 2 && c.interleave) {
     return branches_by_turns(c, form, items.subspan(1), true);
   }

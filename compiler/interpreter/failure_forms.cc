@@ -18,6 +18,7 @@ struct HandlerSource {
   std::optional<DatumId> variable;
   FormItems body;
   DatumId source;
+  bool takes_failure = true;  // false: calling it with the failure is an error
 };
 
 /// `class`, `(or class...)` or `(class...)`.
@@ -38,6 +39,10 @@ std::uint32_t compile_handler(FormCompiler& c, const HandlerSource& handler,
   const auto unit = c.code.declare_unit("a failure handler", handler.source, 1);
   c.code.enter_unit(unit);
   if (handler.variable) bind_variable(c, *handler.variable, 0, handler.source);
+  if (!handler.takes_failure) {
+    c.always_fails(handler.source, "it is called with the failure and has no variable for it");
+    c.code.drop(handler.source);
+  }
   c.compile_body(c.skip_declarations(handler.body));
   close_variables(c, scope, 0, handler.source);
   c.code.leave_unit(PlanOp::kEndHandler, handler.source);
@@ -95,15 +100,14 @@ void form_with_failure_handling(FormCompiler& c, DatumId form, FormItems items) 
     const auto variable = parts.size() < 2 ? FormItems() : c.data.children(parts[1]);
     const bool shaped = parts.size() >= 2 &&
                         (c.data.is_list(parts[1]) || c.data.is_nil(parts[1])) &&
-                        variable.size() == 1 && c.data.is_symbol(variable[0]);
+                        variable.size() < 2 && (variable.empty() || c.data.is_symbol(variable[0]));
     if (!shaped) {
-      c.malformed(form,
-                  "a handler is (class (variable) form...); it is called with the failure and "
-                  "needs the variable, as in (plan-failure (e) ...)");
+      c.malformed(form, "a handler is (class (variable) form...), as in (plan-failure (e) ...)");
       continue;
     }
     HandlerSource handler{class_list(c, parts[0]), std::nullopt, parts.subspan(2), clause};
-    handler.variable = variable[0];
+    handler.takes_failure = !variable.empty();
+    if (handler.takes_failure) handler.variable = variable[0];
     handlers.push_back(std::move(handler));
   }
   handling(c, form, handlers, items.subspan(2));

@@ -370,6 +370,11 @@ void FormCompiler::refuse(DatumId form, std::string_view text) {
   nil(form);
 }
 
+void FormCompiler::always_fails(DatumId form, std::string_view why) {
+  warning(codes::kAlwaysFails, form, form_name(form), why);
+  code.fail("simple-error", form);
+}
+
 void FormCompiler::unsupported(DatumId form, std::string_view text) {
   error(codes::kUnsupportedPlanForm, form, form_name(form), text);
 }

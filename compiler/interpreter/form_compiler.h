@@ -146,6 +146,8 @@ class FormCompiler {
   void malformed(DatumId form, std::string_view text);
   /// malformed, and nil in the form's place.
   void refuse(DatumId form, std::string_view text);
+  /// Warns, and signals an error in the form's place.
+  void always_fails(DatumId form, std::string_view why);
   void unsupported(DatumId form, std::string_view text);
   void unknown_form(DatumId form, DatumId symbol);
   /// Refuses a perform inside a form that is not evaluated: the plan would silently lose an action.

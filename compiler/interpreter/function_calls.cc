@@ -332,10 +332,13 @@ void compile_call(FormCompiler& c, DatumId form, std::string_view name, const Ca
   if (ours || callee.builtin) note_changed_list(c, form, name, arguments);
   if (callee.function != nullptr) {
     if (callee.function->top_level && c.in_function) {
-      c.error(codes::kUnsupportedPlanForm, form, name,
-              "a `def-top-level-cram-function` cannot be called from a plan; make it a "
-              "`def-cram-function`")
-          .note(c.data.source(callee.function->source), "defined here");
+      for (const auto argument : arguments) {
+        c.compile(argument);
+        c.code.drop(argument);
+      }
+      return c.always_fails(form,
+                            "a `def-top-level-cram-function` does not run in another; make it a "
+                            "`def-cram-function`");
     }
     if (binds_late(c, *callee.function, arguments)) {
       callee_value(c, callee, form);

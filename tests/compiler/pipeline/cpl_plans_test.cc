@@ -167,7 +167,8 @@ Ours unrolled(const std::string& text, bool interleave) {
 }
 
 std::string difference(const std::string& name, const Measured& real, const Ours& ours) {
-  if (real.dies || real.lisp_error) {
+  // A plan that signals a Lisp error is refused, or ends as the real one.
+  if (real.dies || (real.lisp_error && ours.refused)) {
     return ours.refused && ours.located ? "" : "accepted, and the real one dies";
   }
   if (ours.refused) {

@@ -45,7 +45,9 @@ const Case kCases[] = {
     {"(dolist (x 5) x)", "CPL008", "`dolist`: expected a list, not 5"},
     {"(destructuring-bind (a b) '(1) a)", "CPL008",
      "`destructuring-bind`: the pattern has 2 parts, the list 1"},
-    {"(par)", "CPL003", "malformed `par`: without branches it waits for nothing and fails"},
+    {"(par)", "W-ERROR",
+     "`par` signals an error whenever it is reached: without branches it waits for nothing"},
+    {"(try-all)", "CPL003", "malformed `try-all`: without branches it waits for nothing and fails"},
     {"(par-loop (x (list)) x)", "CPL008",
      "`par-loop-list`: the list is empty, and nothing runs; guard it with `when`"},
     {"(make-quaternion 0 0 0 0)", "CPL008", "`make-quaternion`: the quaternion has no direction"},
@@ -55,7 +57,11 @@ const Case kCases[] = {
      "`fl-funcall` waits for others or reacts to them, which is not followed here"},
     {"(wait-for 1)", "CPL011",
      "`wait-for` waits for others or reacts to them, which is not followed here"},
-    {"(pursue)", "CPL003", "malformed `pursue`: without branches it waits for nothing and fails"},
+    {"(pursue)", "W-ERROR",
+     "`pursue` signals an error whenever it is reached: without branches it waits for nothing"},
+    {"(with-failure-handling ((plan-failure () 1)) 2)", "W-ERROR",
+     "`plan-failure` signals an error whenever it is reached: it is called with the failure and "
+     "has no variable for it"},
     {"(pursue (list 1) (list 2))", "W-PAR", "the branches of `pursue` are taken in written order"},
     {"(with-failure-handling ((condition (e) (return))) 1)", "CPL013",
      "`condition` is not in the subset here: on the robot its handler also hears signals of the "
