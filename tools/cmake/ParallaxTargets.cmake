@@ -75,6 +75,21 @@ function(parallax_precompile kind)
   endif()
 endfunction()
 
+# The headers of tests that only start the program, which are not optimized. fmt is not among them: see above.
+function(parallax_precompile_for_tests)
+  if(NOT PARALLAX_PRECOMPILE)
+    return()
+  endif()
+  add_library(parallax_precompiled_test OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/tools/cmake/precompiled.cc)
+  target_link_libraries(parallax_precompiled_test PRIVATE parallax_warnings fmt::fmt nlohmann_json::nlohmann_json
+    doctest::doctest)
+  target_compile_options(parallax_precompiled_test PRIVATE ${PARALLAX_PLAIN_TEST})
+  target_compile_definitions(parallax_precompiled_test PRIVATE ${PARALLAX_TEST_DEFINITIONS})
+  target_precompile_headers(parallax_precompiled_test PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem>
+    <fstream> <functional> <map> <memory> <optional> <regex> <set> <span> <sstream> <string> <string_view> <tuple>
+    <unordered_map> <utility> <variant> <vector> <nlohmann/json.hpp> <doctest/doctest.h>)
+endfunction()
+
 function(parallax_use_precompiled target kind)
   if(PARALLAX_PRECOMPILE)
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:fmt::fmt>)  # its definitions have to be the same
@@ -258,6 +273,12 @@ function(parallax_write_layers)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/layers.txt CONTENT "${layers}" @ONLY)
 endfunction()
 
+set(PARALLAX_TEST_DEFINITIONS DOCTEST_CONFIG_SUPER_FAST_ASSERTS
+  PARALLAX_SOURCE_DIR="${PROJECT_SOURCE_DIR}" PARALLAX_BINARY_DIR="${PROJECT_BINARY_DIR}")
+# Tests are compiled more often than they run; what they link keeps its own options. Without any optimization their
+# copies of inline functions would take the place of the libraries': only where they just start the program.
+set(PARALLAX_PLAIN_TEST $<IF:$<CONFIG:Release>,-O0,-O1>)
+
 # parallax_test(NAME SOURCES a_test.cc ... DEPENDS lib ... [LABELS fast])
 # A doctest binary, registered with CTest as one test per suite file.
 function(parallax_test name)
@@ -267,10 +288,15 @@ function(parallax_test name)
     ${arg_DEPENDS} parallax_test_support doctest::doctest parallax_warnings)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   parallax_batches(${name} ${PARALLAX_TEST_BATCH} ${arg_SOURCES})
-  # Tests are compiled more often than they run.
-  target_compile_options(${name} PRIVATE -O1)
-  target_compile_definitions(${name} PRIVATE DOCTEST_CONFIG_SUPER_FAST_ASSERTS
-    PARALLAX_SOURCE_DIR="${PROJECT_SOURCE_DIR}" PARALLAX_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  target_compile_definitions(${name} PRIVATE ${PARALLAX_TEST_DEFINITIONS})
+  if("parallax_cli_fixture" IN_LIST arg_DEPENDS AND NOT "oracle" IN_LIST arg_LABELS)
+    target_compile_options(${name} PRIVATE ${PARALLAX_PLAIN_TEST})
+    if(CMAKE_BUILD_TYPE STREQUAL Release)
+      parallax_use_precompiled(${name} test)
+    endif()
+  else()
+    target_compile_options(${name} PRIVATE -O1)
+  endif()
   add_test(NAME ${name} COMMAND ${name})
   if(NOT arg_LABELS)
     set(arg_LABELS fast)
