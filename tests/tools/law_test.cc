@@ -88,7 +88,7 @@ TEST_CASE("a simulator whose script has changed goes on with no run, and replay 
   CHECK(cli.parallax(resume).code == 4);
 }
 
-TEST_CASE("a result of a suite is not taken over when the script of its simulator has changed") {
+TEST_CASE("a suite takes over no result of a simulator that a command starts") {
   const CliFixture cli;
   cli.write("words.sh", kWords);
   const auto scenario = cli.read("scenario.yaml");
@@ -99,7 +99,8 @@ TEST_CASE("a result of a suite is not taken over when the script of its simulato
   auto resumed = suite;
   resumed.emplace_back("--resume");
   REQUIRE(cli.parallax(suite).code == 0);
-  CHECK(json_of(cli, resumed)["reused"] == 1);
+  // Nobody knows what the program reads, so it is run again even if its script has not changed.
+  CHECK(json_of(cli, resumed)["reused"] == 0);
   cli.write("words.sh", std::string(kWords) + "# another version\n");
   CHECK(json_of(cli, resumed)["reused"] == 0);
   // Without an expected verdict it is no pass.
