@@ -124,7 +124,7 @@ export class Commands {
     const result = runResultOf(document);
     const causes = result.causes.length === 0 ? '' : `: ${result.causes.join('; ')}`;
     void vscode.window.showInformationMessage(
-      `${name}: ${result.verdict} after ${result.simulations} simulations${causes}`,
+      `${name}: ${result.verdict} after ${result.simulations} simulation${result.simulations === 1 ? '' : 's'}${causes}`,
     );
     await this.showReport(vscode.Uri.file(out));
   }

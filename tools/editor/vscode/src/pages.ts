@@ -28,8 +28,8 @@ body {
   --quiet: var(--vscode-descriptionForeground, #59636e);
   --line: var(--vscode-panel-border, #d0d7de);
   --link: var(--vscode-textLink-foreground, #0757ba);
-  --more: var(--vscode-testing-iconPassed, #1a6e2e);
-  --less: var(--vscode-testing-iconFailed, #b42318);
+  --more: #1a6e2e;
+  --less: #b42318;
   color: var(--text); background: var(--ground); margin: 0; padding: 0.75rem 1rem 2rem;
   font: var(--vscode-font-weight, 400) var(--vscode-font-size, 13px)/1.5
     var(--vscode-font-family, system-ui, sans-serif);
@@ -41,16 +41,19 @@ body {
     --quiet: var(--vscode-descriptionForeground, #9d9d9d);
     --line: var(--vscode-panel-border, #3c3c3c);
     --link: var(--vscode-textLink-foreground, #6cb6ff);
-    --more: var(--vscode-testing-iconPassed, #73c991);
-    --less: var(--vscode-testing-iconFailed, #f4877e);
+    --more: #73c991;
+    --less: #f4877e;
   }
 }
+body.vscode-light { --more: #1a6e2e; --less: #b42318; }
+body.vscode-dark { --more: #73c991; --less: #f4877e; }
+body.vscode-high-contrast { --more: var(--text); --less: var(--text); }
 h1 { font-size: 1.25rem; font-weight: 600; margin: 0 0 0.25rem; overflow-wrap: anywhere; }
 h2 { font-size: 1rem; font-weight: 600; margin: 1.25rem 0 0.25rem; }
 p { margin: 0.25rem 0 0.5rem; max-width: 72ch; overflow-wrap: anywhere; }
 .quiet { color: var(--quiet); }
 code, .atom { font-family: var(--vscode-editor-font-family, ui-monospace, monospace); font-size: 0.95em; }
-code { overflow-wrap: anywhere; white-space: pre-wrap; }
+code { overflow-wrap: anywhere; white-space: pre-wrap; color: inherit; background: none; padding: 0; }
 .atom { display: inline-block; margin-right: 0.75em; overflow-wrap: anywhere; }
 a { color: var(--link); }
 details { border-top: 1px solid var(--line); padding: 0.25rem 0; }
@@ -65,6 +68,7 @@ tbody th { font-weight: 600; font-variant-numeric: tabular-nums; }
 ins, del { text-decoration: none; }
 ol { margin: 0.25rem 0; padding-left: 2em; }
 li { margin: 0.35rem 0; }
+li details { border: 0; padding: 0; }
 @media (max-width: 30rem) {
   thead { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }
   tr { display: block; border-top: 1px solid var(--line); padding: 0.25rem 0; }
@@ -158,7 +162,7 @@ function traceSection(trace: Trace, isOpen: boolean): string {
   const predicates =
     trace.predicates.length === 0
       ? ''
-      : `<p><span class="quiet">True at all times:</span> ${atoms(trace.predicates)}</p>`;
+      : `<p><span class="quiet">Predicates:</span> ${atoms(trace.predicates)}</p>`;
   return `<details${isOpen ? ' open' : ''}>
 <summary>Trace ${trace.number} <span class="quiet">${escaped(events.join(', ') || 'no event')}</span></summary>
 <table><thead><tr>${heads.map((head) => `<th scope="col">${head}</th>`).join('')}</tr></thead>
@@ -168,8 +172,7 @@ function traceSection(trace: Trace, isOpen: boolean): string {
 
 export function tracesPage(name: string, traces: Traces, nonce: string): string {
   const count = traces.list.length;
-  const noun = count === 1 ? 'trace' : 'traces';
-  let head = traces.isComplete ? `${count} ${noun}, and no others.` : `The first ${count} ${noun}.`;
+  let head = traces.isComplete ? `${counted(count, 'trace')}, and no others.` : `The first ${counted(count, 'trace')}.`;
   if (count === 0) {
     head = traces.isComplete
       ? 'There is no trace: nothing satisfies all axioms. “Parallax: Explain” says which contradict.'
@@ -179,11 +182,15 @@ export function tracesPage(name: string, traces: Traces, nonce: string): string 
   return page(`Traces of ${name}`, `<p class="quiet">${head}</p>\n${sections.join('\n')}`, nonce);
 }
 
+function counted(count: number, noun: string): string {
+  return `${count} ${noun}${count === 1 ? '' : 's'}`;
+}
+
 function axiomItem(axiom: Axiom, folder: string): string {
   const instances =
     axiom.instances.length === 0
       ? ''
-      : `<details><summary class="quiet">${axiom.instances.length} of its instances</summary>${axiom.instances
+      : `<details><summary class="quiet">${counted(axiom.instances.length, 'instance')}</summary>${axiom.instances
           .map((instance) => `<p><code>${escaped(instance)}</code></p>`)
           .join('')}</details>`;
   return `<li>${placeLink(axiom.place, folder)} <span class="quiet">${escaped(axiom.what)}</span><br>
@@ -206,7 +213,8 @@ function contradictionsBody(found: Contradictions, folder: string): string {
 <tbody>${found.differences.map(differenceRow).join('')}</tbody></table>`;
   const cause = found.cause === '' ? '' : `<h2>Cause</h2><p>${escaped(found.cause)}</p>`;
   const sets = found.sets.map((set, at) => {
-    const title = found.sets.length === 1 ? 'Axioms that exclude it' : `Set ${at + 1}`;
+    const what = found.differences.length === 0 ? 'contradict each other' : 'the run contradicts';
+    const title = `Axioms that ${what}${found.sets.length === 1 ? '' : `, set ${at + 1}`}`;
     const words = set.words === '' ? '' : `<p>${escaped(set.words)}</p>`;
     const items = set.axioms.map((axiom) => axiomItem(axiom, folder)).join('\n');
     return `<h2>${title}</h2>${words}<ol>${items}</ol>`;
