@@ -8,7 +8,7 @@ import * as vscode from 'vscode';
 
 import { explanationOf, isError, messagesOf, runResultOf, tracesOf } from './documents';
 import { Host, folderOf } from './host';
-import { explanationPage, messagesPage, openPlaceCommand, tracesPage } from './pages';
+import { explanationPage, messagesPage, openPlaceCommand, tracesPage, withoutLinks } from './pages';
 import { Panels, openPlace } from './panels';
 import { RunsView } from './runs_view';
 import { explainRunWords, explainWords, freeName, reportWords, runWords, traceWords } from './words';
@@ -123,8 +123,9 @@ export class Commands {
     }
     const result = runResultOf(document);
     const causes = result.causes.length === 0 ? '' : `: ${result.causes.join('; ')}`;
+    const simulations = `${result.simulations} simulation${result.simulations === 1 ? '' : 's'}`;
     void vscode.window.showInformationMessage(
-      `${name}: ${result.verdict} after ${result.simulations} simulation${result.simulations === 1 ? '' : 's'}${causes}`,
+      withoutLinks(`${name}: ${result.verdict} after ${simulations}${causes}`),
     );
     await this.showReport(vscode.Uri.file(out));
   }

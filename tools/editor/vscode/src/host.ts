@@ -2,6 +2,7 @@
 
 import * as vscode from 'vscode';
 
+import { withoutLinks } from './pages';
 import { type Answer, ProgramError, programOf, run } from './program';
 import type { Permission } from './words';
 
@@ -56,7 +57,8 @@ export class Host {
   tell(error: unknown): void {
     const text = error instanceof Error ? error.message : String(error);
     this.log.error(text);
-    void vscode.window.showErrorMessage(text.split('\n', 1)[0] ?? text, 'Show Log').then((chosen) => {
+    const first = withoutLinks(text.split('\n', 1)[0] ?? text);
+    void vscode.window.showErrorMessage(first, 'Show Log').then((chosen) => {
       if (chosen !== undefined) this.log.show(true);
     });
   }

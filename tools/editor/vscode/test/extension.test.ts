@@ -22,7 +22,7 @@ writeFileSync(
   `#!${process.execPath}
 require('fs').appendFileSync(${JSON.stringify(started)}, JSON.stringify(process.argv.slice(2)) + '\\n');
 console.log(JSON.stringify({ status: 'ok', traces: 0, complete: true, list: [], cases: [], verdict: 'inconclusive',
-  simulations: 0, discrepancies: [] }));
+  simulations: 0, discrepancies: [{ cause: { text: 'see [this](command:x)' } }] }));
 `,
 );
 chmodSync(program, 0o755);
@@ -84,6 +84,11 @@ test('commands of scenarios are forbidden unless the setting permits them', asyn
     'parallax.path',
     'parallax.allowCommands',
   ]);
+});
+
+test('what the program says makes no link in a notification', () => {
+  const told = editor.messages.filter((message) => message.includes('see [this]'));
+  assert.ok(told.length > 0 && told.every((message) => message.endsWith('see [this] (command:x)')));
 });
 
 test('a file of another kind, and a program that is not there', async () => {
