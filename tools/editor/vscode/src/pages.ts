@@ -91,6 +91,11 @@ export function escaped(text: string): string {
   return text.replace(/[&<>"']/g, (character) => entities[character] ?? character);
 }
 
+/** Sentences of the program, in which names stand between backticks. */
+function prose(text: string): string {
+  return escaped(text).replace(/`([^`]+)`/g, '<code>$1</code>');
+}
+
 /** A text for a notification, where the editor would make links, also to commands, of `[a](b)`. */
 export function withoutLinks(text: string): string {
   return text.replaceAll('](', '] (');
@@ -216,11 +221,11 @@ function contradictionsBody(found: Contradictions, folder: string): string {
       : `<h2>What differs</h2><table><thead><tr><th scope="col">Time</th><th scope="col">Fluent</th>
 <th scope="col">Model</th><th scope="col">World</th></tr></thead>
 <tbody>${found.differences.map(differenceRow).join('')}</tbody></table>`;
-  const cause = found.cause === '' ? '' : `<h2>Cause</h2><p>${escaped(found.cause)}</p>`;
+  const cause = found.cause === '' ? '' : `<h2>Cause</h2><p>${prose(found.cause)}</p>`;
   const sets = found.sets.map((set, at) => {
     const what = found.differences.length === 0 ? 'contradict each other' : 'the run contradicts';
     const title = `Axioms that ${what}${found.sets.length === 1 ? '' : `, set ${at + 1}`}`;
-    const words = set.words === '' ? '' : `<p>${escaped(set.words)}</p>`;
+    const words = set.words === '' ? '' : `<p>${prose(set.words)}</p>`;
     const items = set.axioms.map((axiom) => axiomItem(axiom, folder)).join('\n');
     return `<h2>${title}</h2>${words}<ol>${items}</ol>`;
   });
@@ -264,9 +269,9 @@ export function messagesPage(name: string, messages: readonly Message[], folder:
     const place = one.place === undefined ? '' : `${placeLink(one.place, folder)}: `;
     const further = [...one.notes, one.help]
       .filter((text) => text !== '')
-      .map((text) => `<br><span class="quiet">${escaped(text)}</span>`)
+      .map((text) => `<br><span class="quiet">${prose(text)}</span>`)
       .join('');
-    return `<li>${place}${escaped(one.severity)}[${escaped(one.code)}]: ${escaped(one.message)}${further}</li>`;
+    return `<li>${place}${escaped(one.severity)}[${escaped(one.code)}]: ${prose(one.message)}${further}</li>`;
   });
   return page(`No answer about ${name}`, `<ol>${items.join('\n')}</ol>`, nonce);
 }

@@ -7,6 +7,7 @@ import type { Traces } from '../src/documents';
 import { changes, escaped, explanationPage, hasStrictPolicy, messagesPage, tracesPage } from '../src/pages';
 
 const evil = `<script>alert(1)</script><img src=x onerror="a">'&`;
+const named = '`<b>`';
 
 function point(time: number, holds: string[], happens: string[] = [], released: string[] = []) {
   return { time, holds, happens, released };
@@ -88,6 +89,11 @@ test('texts of models are texts in a page', () => {
     checkMarkup(html);
     assert.ok(!html.includes('<img') && !html.includes('<script'));
   }
+});
+
+test('names between backticks are code, and still texts', () => {
+  const message = { severity: 'error', code: 'E2101', message: `no fluent ${named}`, help: '', notes: [], place: undefined };
+  assert.ok(messagesPage('m.e', [message], '/w', 'n').includes('no fluent <code>&lt;b&gt;</code></li>'));
 });
 
 test('a table has a row for each timepoint, with what changes', () => {
