@@ -28,6 +28,22 @@ TEST_CASE("docs/reference/diagnostics.md is what tools/update_docs makes") {
   CHECK(cli.parallax({"diagnostics"}).out == document("docs/reference/diagnostics.md"));
 }
 
+TEST_CASE("`diagnostics CODE` says what to do, and refuses other words") {
+  const CliFixture cli;
+  for (const auto& info : base::all_diagnostics()) {
+    if (info.id != "E0001" && info.id != "W-PAR") continue;
+    const auto printed = cli.parallax({"diagnostics", std::string(info.id)});
+    CHECK(printed.code == 0);
+    for (const auto part : {info.id, info.format, info.help}) {
+      CHECK_MESSAGE(printed.out.find(part) != std::string::npos, printed.out);
+    }
+  }
+  const auto refused = cli.parallax({"diagnostics", "E0001", "E001"});
+  CHECK(refused.code == 2);
+  CHECK(refused.out.empty());
+  CHECK_MESSAGE(refused.err.find("there is no such code") != std::string::npos, refused.err);
+}
+
 TEST_CASE("codes and names of diagnostics are unique") {
   std::set<std::string_view> ids;
   for (const auto& info : base::all_diagnostics()) {

@@ -1,38 +1,88 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/base/codes/files.h"
+#include "compiler/base/suggest.h"
 #include "tools/cli/command.h"
 
 namespace parallax::tools {
 namespace {
 
-/// docs/reference/diagnostics.md: the registry as a table, one section for each hundred codes'
-/// letter.
+std::string_view severity_of(const base::DiagnosticInfo& info) {
+  return info.severity == base::Severity::kError ? "error" : "warning";
+}
+
+/// docs/reference/diagnostics.md: every code with its text, a row each.
 std::string registry_page() {
   std::string out =
       "# Diagnostics\n\n"
-      "Every error and warning has a code that is never reused. What to do is printed behind the "
-      "message as `help:`, once\nfor several messages, unless a `fix:` says it for the place. This "
-      "page is made by `tools/update_docs`.\n\n"
-      "| code | severity | text | what to do |\n|---|---|---|---|\n";
+      "Every error (E, CPL) and warning (W) has a code that is never reused. The message says what "
+      "to do behind `help:` or\n`fix:`; `parallax diagnostics CODE` prints it for a code. This "
+      "page "
+      "is made by `tools/update_docs`.\n\n"
+      "| code | text |\n|---|---|\n";
   const auto cell = [](std::string_view text) {
     std::string escaped;
     for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
     return escaped;
   };
   for (const auto& info : base::all_diagnostics()) {
-    out += fmt::format("| {} | {} | {} | {} |\n", info.id,
-                       info.severity == base::Severity::kError ? "error" : "warning",
-                       cell(info.format), cell(info.help));
+    out += fmt::format("| {} | {} |\n", info.id, cell(info.format));
   }
   return out;
+}
+
+struct DiagnosticsOptions {
+  std::vector<std::string> codes;
+};
+
+void refuse(const std::string& code, base::DiagnosticSink& sink) {
+  std::vector<std::string> ids;
+  for (const auto& one : base::all_diagnostics()) ids.emplace_back(one.id);
+  auto error = sink.error_about(codes::kUsage, code, "there is no such code");
+  if (const auto near = base::nearest_name(code, ids)) {
+    error.fix(fmt::format("replace `{}` with `{}`", base::printable(code), *near));
+  }
+  error.note("`parallax diagnostics` lists them");
+}
+
+int show_diagnostics(const DiagnosticsOptions& options, Invocation& invocation) {
+  if (options.codes.empty()) {
+    invocation.result(registry_page());
+    return 0;
+  }
+  const auto& all = base::all_diagnostics();
+  std::string out;
+  for (const auto& code : options.codes) {
+    const auto info =
+        std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.id == code; });
+    if (info == all.end()) {
+      refuse(code, invocation.sink());
+      return 0;
+    }
+    out += fmt::format("{}[{}]: {}\nhelp: {}\n", severity_of(*info), info->id, info->format,
+                       info->help);
+  }
+  invocation.result(out);
+  return 0;
 }
 
 }  // namespace
 
 Command diagnostics_command() {
+  auto options = std::make_shared<DiagnosticsOptions>();
   OptionTable command("diagnostics", "Print the table of error and warning codes");
-  return {std::move(command), [](Invocation& invocation) {
-            invocation.result(registry_page());
-            return 0;
-          }};
+  command.footer(
+      "Examples:\n"
+      "  parallax diagnostics\n"
+      "  parallax diagnostics E2104 W5138");
+  command.option("codes", options->codes, "Codes: print what to do, instead of the table");
+  return command_of(std::move(command), options, show_diagnostics);
 }
 
 }  // namespace parallax::tools
