@@ -216,6 +216,7 @@ class Campaign {
     bench_.close();
     if (complete) recorder_.finish(consumed_);
     recorder_.report(sink_);
+    result_.kinds = count_kinds(consumed_);
     if (complete) keep_used_lines();
     if (complete && !journal_->rewrite(lines_, std::move(consumed_), sink_)) {
       return sink_.already_reported();

@@ -35,6 +35,9 @@ struct CampaignOptions {
   std::string start_folder;       // where the paths of the scenario start; empty: not recorded
   std::string scenario_hash;      // over every text that was read (hash_of_sources)
   std::string tool_version;
+  /// Digits that tell machines and builds apart, for the record; empty: not known.
+  std::string arithmetic, build;
+  bool mixed = false;  // workers may be of several kinds, and simulations name theirs
   RecordMode record = RecordMode::kNone;
   const std::atomic<bool>* stop = nullptr;                // raised by SIGINT and SIGTERM
   std::function<void(const CampaignProgress&)> progress;  // called in the caller's thread

@@ -242,7 +242,8 @@ struct CampaignResult {
   std::string replay_folder;  // run folder as the user wrote it
   std::vector<TraceResult> traces;
   std::vector<Discrepancy> discrepancies;
-  RepetitionResult repetition;  // of the first clean simulation
+  RepetitionResult repetition;   // of the first clean simulation
+  std::vector<KindCount> kinds;  // of workers, where they may be several
   std::shared_ptr<const SecondOpinion>
       second_opinion;                   // of another simulator; null: none was asked
   std::vector<CoverageShare> coverage;  // shares of the items that exist; none: not measured

@@ -344,12 +344,40 @@ void Journal::know(const std::map<SampleKey, SampleRecord>& samples) {
   for (const auto& [key, record] : samples) recorded_.samples.insert_or_assign(key, record);
 }
 
+// To sync takes milliseconds, and hundreds of workers may have a line at the same time. One of them
+// writes and syncs all lines that wait, while the others come together for the next batch. Nobody
+// goes on before the own line is on disk. A kill leaves whole lines and at most one that is cut
+// short, the last: all lines of a batch are one write.
 void Journal::write_line(const std::string& line) {
+  std::unique_lock lock(mutex_);
+  waiting_ += line + '\n';
+  const auto mine = ++lines_given_;
+  while (lines_synced_ < mine && write_error_.empty()) {
+    if (is_writing_) {
+      synced_.wait(lock);
+      continue;
+    }
+    is_writing_ = true;
+    const auto batch = std::exchange(waiting_, {});
+    const auto last = lines_given_;
+    lock.unlock();
+    const bool is_on_disk = base::write_all(fd_, batch) && ::fdatasync(fd_) == 0;
+    const int error = errno;
+    lock.lock();
+    is_writing_ = false;
+    if (is_on_disk) {
+      lines_synced_ = last;
+      ++batches_;
+    } else {
+      write_error_ = std::strerror(error);
+    }
+    synced_.notify_all();
+  }
+}
+
+std::int64_t Journal::batches() const {
   const std::lock_guard lock(mutex_);
-  if (!write_error_.empty()) return;
-  // One write of the whole line: a kill leaves it whole, cut short, or not there.
-  if (!base::write_all(fd_, line + '\n') || ::fdatasync(fd_) != 0)
-    write_error_ = std::strerror(errno);
+  return batches_;
 }
 
 void Journal::append(const TraceLine& trace) { write_line(encode(trace)); }

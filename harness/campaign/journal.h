@@ -1,5 +1,7 @@
 #pragma once
 
+#include <condition_variable>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -75,7 +77,7 @@ base::Result<JournalText> read_for_continuation(const RunFolder& folder,
                                                 base::DiagnosticSink& sink);
 
 /// The record of a run on disk: one line per finished simulation, synced before `append` returns.
-/// `append` may be called from several threads.
+/// `append` may be called from several threads, whose lines are then synced together.
 class Journal {
  public:
   /// Starts a journal in `folder`, or continues the one that was `recorded` there. The losses at
@@ -104,6 +106,8 @@ class Journal {
   void append(const SampleRecord& record);
   /// The reason why a line could not be written; empty as long as all is well.
   std::string write_error() const;
+  /// How often lines were synced so far.
+  std::int64_t batches() const;
 
   /// Replaces the file by header, traces and `consumed`, sorted by trace, sample and phase. It then
   /// no longer shows the order in which simulations ended, nor those that ran ahead without being
@@ -123,6 +127,10 @@ class Journal {
   mutable std::mutex mutex_;  // guards what follows
   int fd_ = -1;
   std::string write_error_;
+  std::condition_variable synced_;
+  std::string waiting_;  // lines that are not written yet
+  std::int64_t lines_given_ = 0, lines_synced_ = 0, batches_ = 0;
+  bool is_writing_ = false;  // somebody is, without the lock
 };
 
 }  // namespace parallax::harness

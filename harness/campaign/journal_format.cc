@@ -7,7 +7,6 @@
 
 #include "compiler/base/json.h"
 #include "harness/campaign/result_json.h"
-#include "harness/simulator/arithmetic.h"
 #include "harness/simulator/command_files.h"
 #include "harness/simulator/state_json.h"
 
@@ -191,6 +190,7 @@ SampleRecord record_of(const Json& object) {
          outcome.contains("margins") ? state_of(field(outcome, "margins"), "margins") : State()});
   }
   record.digest = get<std::string>(object, "digest");
+  if (object.contains("kind")) record.kind = get<std::string>(object, "kind");
   if (object.contains("path")) {
     record.path = path_of(object);
   } else if (object.contains("start_state")) {
@@ -241,6 +241,11 @@ std::optional<HeaderDifference> differing(const AnyJson& a, const AnyJson& b,
   return HeaderDifference{path, base::json_text(a), base::json_text(b)};
 }
 
+/// Two digests of which one may not be known.
+bool changed(const std::string& recorded, const std::string& now) {
+  return !recorded.empty() && !now.empty() && recorded != now;
+}
+
 }  // namespace
 
 JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& options,
@@ -251,7 +256,9 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
   header.scenario_hash = options.scenario_hash;
   header.seed = options.seed;
   header.tool_version = options.tool_version;
-  header.arithmetic = arithmetic_digits();
+  header.arithmetic = options.arithmetic;
+  header.build = options.build;
+  header.mixed = options.mixed;
   header.simulator = simulator;
   header.simulator.parameters.clear();
   header.simulator.actions.clear();
@@ -266,6 +273,8 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
 std::string encode(const JournalHeader& header) {
   auto out = json_of(header);
   if (!header.arithmetic.empty()) out["arithmetic"] = header.arithmetic;
+  if (!header.build.empty()) out["build"] = header.build;
+  if (header.mixed) out["mixed"] = true;
   if (!header.command_hash.empty()) out["simulator"]["command_hash"] = header.command_hash;
   if (header.max_runs > 0) out["max_runs"] = header.max_runs;
   out["options"] = base::parse_ordered_json(header.options);
@@ -350,6 +359,7 @@ std::string encode(const SampleRecord& record) {
   }
   out["outcomes"] = std::move(outcomes);
   out["digest"] = record.digest;
+  if (!record.kind.empty()) out["kind"] = record.kind;
   if (!record.path) return base::json_text(out);
   out["start_state"] = record.path->start;
   if (!record.path->target.empty()) out["target"] = record.path->target;
@@ -380,6 +390,8 @@ std::variant<JournalHeader, ForeignLine> decode_header(std::string_view line) tr
   header.seed = get<std::uint64_t>(object, "seed");
   header.tool_version = get<std::string>(object, "tool_version");
   if (object.contains("arithmetic")) header.arithmetic = get<std::string>(object, "arithmetic");
+  if (object.contains("build")) header.build = get<std::string>(object, "build");
+  if (object.contains("mixed")) header.mixed = get<bool>(object, "mixed");
   const auto& simulator = field(object, "simulator");
   header.simulator.name = get<std::string>(simulator, "name");
   header.simulator.version = get<std::string>(simulator, "version");
@@ -412,8 +424,12 @@ bool command_changed(const JournalHeader& recorded, const std::string& command_h
   return !recorded.command_hash.empty() && recorded.command_hash != command_hash;
 }
 
-bool arithmetic_changed(const JournalHeader& recorded, const std::string& arithmetic) {
-  return !recorded.arithmetic.empty() && recorded.arithmetic != arithmetic;
+MachineChange machine_change(const JournalHeader& recorded, const SampleRecord& record,
+                             const std::string& arithmetic, const std::string& build) {
+  const auto slash = record.kind.find('/');
+  const bool has_kind = slash != std::string::npos;
+  return {changed(has_kind ? record.kind.substr(slash + 1) : recorded.arithmetic, arithmetic),
+          changed(has_kind ? record.kind.substr(0, slash) : recorded.build, build)};
 }
 
 std::optional<HeaderDifference> header_difference(const JournalHeader& recorded,
@@ -425,9 +441,17 @@ std::optional<HeaderDifference> header_difference(const JournalHeader& recorded,
     before.erase(name);
     after.erase(name);
   }
+  if (recorded.mixed != now.mixed) {
+    const auto word = [](const JournalHeader& header) { return header.mixed ? "yes" : "no"; };
+    return HeaderDifference{"permission for workers of several kinds (--mixed)", word(recorded),
+                            word(now)};
+  }
   if (auto found = differing(before, after, {})) return found;
-  if (arithmetic_changed(recorded, now.arithmetic)) {
+  if (!now.mixed && changed(recorded.arithmetic, now.arithmetic)) {
     return HeaderDifference{"processor's arithmetic", recorded.arithmetic, now.arithmetic};
+  }
+  if (!now.mixed && changed(recorded.build, now.build)) {
+    return HeaderDifference{"program's build, or that of a library", recorded.build, now.build};
   }
   if (command_changed(recorded, now.command_hash)) {
     return HeaderDifference{"simulator's program or script", recorded.command_hash,

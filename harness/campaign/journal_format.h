@@ -25,7 +25,9 @@ struct JournalHeader {
   std::string scenario_hash;
   std::uint64_t seed = 0;
   std::string tool_version;
-  std::string arithmetic;   // of its processor (arithmetic_digits); empty: an older journal
+  std::string arithmetic;   // of its machine (CampaignOptions); empty: not known
+  std::string build;        // of its program and libraries, likewise
+  bool mixed = false;       // workers may differ in both, and each simulation names its kind
   SimulatorInfo simulator;  // without parameters and actions: the scenario was checked against them
   std::string command_hash;   // over the files of its command; empty: built in, or an older journal
   std::int64_t max_runs = 0;  // of a trace; 0: as the criterion needs
@@ -71,8 +73,13 @@ struct HeaderDifference {
   std::string field;  // "seed", "options.criterion.epsilon"
   std::string recorded, now;
 };
-/// Whether the run was begun on a processor that calculates otherwise, as far as is known.
-bool arithmetic_changed(const JournalHeader& recorded, const std::string& arithmetic);
+/// What is not now as it was when the simulation was made, as far as is known.
+struct MachineChange {
+  bool arithmetic = false;  // the machine calculates otherwise
+  bool build = false;       // another build of the program or of a library
+};
+MachineChange machine_change(const JournalHeader& recorded, const SampleRecord& record,
+                             const std::string& arithmetic, const std::string& build);
 
 std::optional<HeaderDifference> header_difference(const JournalHeader& recorded,
                                                   const JournalHeader& now);

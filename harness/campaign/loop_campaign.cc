@@ -353,6 +353,7 @@ class LoopCampaign {
       }
     }
     stream_.simulated_s = result_.simulated_s = simulated_s(consumed_);
+    result_.kinds = count_kinds(consumed_);
     if (!interrupted && !result_.failed) recorder_.finish(consumed_);
     recorder_.report(sink_);
     if (!interrupted && !result_.failed) {

@@ -58,6 +58,7 @@ class Estimator {
     result.simulator = simulator.name + (simulator.version.empty() ? "" : " ") + simulator.version;
     if (!result.complete && !lost_too_often_) forget_plan(result);
     if (options_.trace == 0) result.bounds = traces_.bounds();
+    for (const auto& [kind, count] : kinds_) result.kinds.push_back({kind, count});
     return result;
   }
 
@@ -165,6 +166,7 @@ class Estimator {
   void count(const Trial& trial, const TrialSample& sample, TraceRates& rates,
              std::map<std::string, CauseRate>& causes) {
     const auto& record = sample.record;
+    if (!record.kind.empty()) ++kinds_[record.kind];
     rates.rejected += record.rejected;
     count_start(trial.starts(), sample, rates.starts);
     switch (sample.verdict) {
@@ -220,7 +222,8 @@ class Estimator {
   const RatesOptions& options_;
   base::DiagnosticSink& sink_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
-  bool lost_too_often_ = false;  // which ended the runs
+  bool lost_too_often_ = false;                // which ended the runs
+  std::map<std::string, std::int64_t> kinds_;  // simulations by kind of worker
   TrialBench bench_;
 };
 

@@ -84,6 +84,7 @@ struct RatesResult {
   std::string scenario_hash{}, starts_hash{}, judging_hash{};
   bool complete = true;  // false: stopped, or the simulator was lost too often
   std::vector<TraceRates> traces;
+  std::vector<KindCount> kinds;     // of workers, where they may be several
   std::vector<std::string> bounds;  // what was left out, a sentence each
 
   /// Weighs the runs of a trace as evidence for or against `until_known`; of `indifference` it is

@@ -12,7 +12,6 @@
 #include "harness/campaign/journal.h"
 #include "harness/campaign/sample_record.h"
 #include "harness/campaign/sample_runner.h"
-#include "harness/simulator/arithmetic.h"
 
 namespace parallax::harness {
 namespace {
@@ -91,7 +90,6 @@ ReplayResult replay_sample(const RecordedRun& run, const std::string& scenario_h
   result.outcome = ReplayOutcome::kIdentical;
   if (auto differs = first_difference(record, *again)) {
     result.outcome = ReplayOutcome::kDiffers;
-    result.other_arithmetic = arithmetic_changed(run.header, arithmetic_digits());
     result.difference =
         ReplayDifference{differs->timepoint, differs->variable, differs->a, differs->b};
   }

@@ -40,9 +40,9 @@ struct ReplayResult {
   std::uint64_t seed = 0;
   std::string reason;  // for kCannot
   std::optional<ReplayDifference> difference;
-  std::size_t timepoints = 0;     // compared
-  std::string digest;             // recorded
-  bool other_arithmetic = false;  // recorded on a processor that calculates otherwise
+  std::size_t timepoints = 0;  // compared
+  std::string digest;          // recorded
+  MachineChange machine;       // since it was recorded
 };
 
 /// One recorded simulation with what was asked of the simulator.
@@ -77,6 +77,7 @@ std::string simulator_change(const JournalHeader& header, const SimulatorInfo& s
 /// bit for bit. A simulator is made only if nothing that is on record forbids the repetition, above
 /// all a changed scenario.
 /// `moved`: the repetition is recorded there, where it came to its end, whether it differs or not.
+/// What has changed of the machine is for the caller to say (machine_change).
 ReplayResult replay_sample(const RecordedRun& run, const std::string& scenario_hash,
                            const SimulatorFactory& make_simulator,
                            std::optional<Recording>* moved = nullptr);

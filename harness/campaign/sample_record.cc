@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <map>
 
 #include "compiler/base/ascii.h"
 #include "compiler/base/shown_text.h"
@@ -64,6 +65,16 @@ std::string reason_word(const ActionOutcome& outcome) {
     return std::string(to_string(outcome.status));
   }
   return outcome.reason.substr(0, outcome.reason.find(':'));
+}
+
+std::vector<KindCount> count_kinds(std::span<const SampleRecord> records) {
+  std::map<std::string, std::int64_t> counts;
+  for (const auto& record : records) {
+    if (!record.kind.empty()) ++counts[record.kind];
+  }
+  std::vector<KindCount> out;
+  for (const auto& [kind, count] : counts) out.push_back({kind, count});
+  return out;
 }
 
 double simulated_s(std::span<const SampleRecord> records) {
@@ -152,6 +163,7 @@ SampleRow sample_row(const SampleRecord& record, const char* outcome) {
   row.outcome = outcome;
   row.reason = record.reason;
   row.start = record.initial;
+  row.kind = record.kind;
   for (const auto& one : record.outcomes) {
     row.sim_time_s += one.sim_time_s;
     row.margins.push_back(one.margins);

@@ -107,8 +107,18 @@ struct SampleRecord {
   std::vector<ActionOutcome> outcomes;  // per event; fewer when lost
   std::string digest;                   // of the last observation
   std::optional<ExecutedPath> path;     // of a plan that was executed
+  /// "BUILD/ARITHMETIC" of the worker that made it, where workers may be of several kinds.
+  std::string kind = {};
   friend bool operator==(const SampleRecord&, const SampleRecord&) = default;
 };
+
+/// How many simulations workers of one kind made.
+struct KindCount {
+  std::string kind;  // as in SampleRecord
+  std::int64_t simulations = 0;
+};
+/// The kinds of these simulations, sorted; empty where workers were of one kind only.
+std::vector<KindCount> count_kinds(std::span<const SampleRecord> records);
 
 /// The seconds that the simulator says its acts took, of all samples together.
 double simulated_s(std::span<const SampleRecord> records);

@@ -24,6 +24,7 @@ struct SampleRow {
   double sim_time_s = 0.0;
   State start;
   std::vector<State> margins;  // by event
+  std::string kind;            // as in SampleRecord
 };
 
 /// Called for each simulation in the order in which they count, in the caller's thread.

@@ -36,6 +36,8 @@ auto asked(const Request& request) {
     throw;
   } catch (const std::exception& thrown) {
     throw SimulatorThrew(thrown.what());
+  } catch (...) {
+    throw SimulatorThrew("something that is no std::exception");
   }
 }
 

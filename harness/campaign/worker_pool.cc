@@ -8,6 +8,10 @@
 // counted up: jobs of an older one end at their next look and their results are dropped. The
 // stop flag is raised by a signal handler, which cannot notify, so it is looked at now and then.
 //
+// There may be a thousand workers. Each job wakes one of those that wait, each result only the
+// caller; workers elsewhere that have nothing to do look for late simulations now and then, the
+// more of them the less often.
+//
 // Cost: a job is taken in constant time; the look for a late one is linear in the jobs under
 // way.
 
@@ -22,6 +26,7 @@ namespace parallax::harness {
 namespace {
 
 constexpr auto kStopSlice = std::chrono::milliseconds(50);  // how late the stop flag may be seen
+constexpr std::int64_t kBusyWatchers = 64;  // so many idle workers look for late simulations
 
 // A simulation is also given to a second worker once it has taken this many times the average. A
 // run is rarely that long by itself, and the second worker had nothing to do.
@@ -59,7 +64,7 @@ void WorkerPool::close() {
     closing_ = true;
     for (auto* remote : remotes_) remote->interrupt();
   }
-  changed_.notify_all();
+  work_.notify_all();
   for (auto& thread : threads_) thread.join();
   threads_.clear();
 }
@@ -78,7 +83,7 @@ void WorkerPool::submit(Job job) {
     job.generation = generation_;
     queue_.push_back(std::move(job));
   }
-  changed_.notify_all();
+  work_.notify_one();
 }
 
 void WorkerPool::submit(std::shared_ptr<const SampleMaker> maker, std::int64_t sample) {
@@ -96,7 +101,7 @@ bool WorkerPool::wait_until(std::unique_lock<std::mutex>& lock, Ready ready) {
   while (!ready()) {
     if (thrown_) std::rethrow_exception(thrown_);
     if (stopped()) return false;
-    changed_.wait_for(lock, kStopSlice);
+    done_.wait_for(lock, kStopSlice);
   }
   return true;
 }
@@ -129,12 +134,16 @@ void WorkerPool::work(std::size_t worker) {
       PARALLAX_REQUIRE(simulator != nullptr, "the factory makes a simulator");
       std::optional<SimulatorInfo> info;
       if (simulator->remote() == nullptr) info = simulator->info();
-      const std::lock_guard lock(mutex_);
-      elsewhere_ = !info;
-      info_ = std::move(info);
+      {
+        const std::lock_guard lock(mutex_);
+        elsewhere_ = !info;
+        info_ = std::move(info);
+      }
+      work_.notify_all();
+      done_.notify_all();
     } else {
       std::unique_lock lock(mutex_);
-      changed_.wait(lock, [&] { return closing_ || elsewhere_ || !queue_.empty(); });
+      work_.wait(lock, [&] { return closing_ || elsewhere_ || !queue_.empty(); });
       if (closing_) return;
       if (elsewhere_) {
         lock.unlock();
@@ -142,7 +151,6 @@ void WorkerPool::work(std::size_t worker) {
         PARALLAX_REQUIRE(simulator != nullptr, "the factory makes a simulator");
       }
     }
-    changed_.notify_all();
     if (simulator && simulator->remote() != nullptr) {
       serve_elsewhere(*simulator);
     } else {
@@ -151,7 +159,7 @@ void WorkerPool::work(std::size_t worker) {
   } catch (...) {
     const std::lock_guard lock(mutex_);
     if (!thrown_) thrown_ = std::current_exception();
-    changed_.notify_all();
+    done_.notify_all();
   }
 }
 
@@ -159,7 +167,7 @@ void WorkerPool::serve_jobs(Simulator* simulator) {
   std::unique_ptr<Simulator> own;
   for (;;) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return closing_ || !queue_.empty(); });
+    work_.wait(lock, [&] { return closing_ || !queue_.empty(); });
     if (closing_) return;
     const Job job = *take_job();
     lock.unlock();
@@ -195,9 +203,10 @@ void WorkerPool::serve_elsewhere(Simulator& simulator) {
     if (!info_) {
       info_ = remote.info();
       repeats_ = may_repeat_losses(*info_);
-      changed_.notify_all();
+      done_.notify_all();
     }
-    while (!closing_ && !has_job()) changed_.wait_for(lock, kStopSlice);
+    const auto slice = kStopSlice * (1 + std::ssize(remotes_) / kBusyWatchers);
+    while (!closing_ && !has_job()) work_.wait_for(lock, slice);
     if (closing_) break;
     lock.unlock();
     if (!remote.ready()) break;
@@ -249,7 +258,7 @@ void WorkerPool::put_back(const Job& job) {
     under_way_.erase(job.key());
     queue_.push_front(job);
   }
-  changed_.notify_all();
+  work_.notify_one();
 }
 
 /// Is it the first result of this simulation? Later ones do not count, nor does a loss while
@@ -281,6 +290,7 @@ void WorkerPool::simulate(const Job& job, Simulator& simulator) {
     return put_back(job);
   }
   if (!record || !claim(job, record->status, Clock::now() - begun)) return;
+  if (const auto* remote = simulator.remote()) record->kind = remote->kind();
   if (moved_) moved_(*record, tap.log());
   if (finished_) finished_(*record);
   ++runs_made_;
@@ -290,7 +300,7 @@ void WorkerPool::simulate(const Job& job, Simulator& simulator) {
     const Key key(record->sample, record->phase);
     results_.insert_or_assign(key, std::move(*record));
   }
-  changed_.notify_all();
+  done_.notify_all();
 }
 
 }  // namespace parallax::harness

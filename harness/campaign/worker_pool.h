@@ -102,8 +102,9 @@ class WorkerPool {
   std::atomic<bool> closing_ = false;
   std::atomic<std::int64_t> runs_made_ = 0;
 
-  mutable std::mutex mutex_;  // guards what follows
-  std::condition_variable changed_;
+  mutable std::mutex mutex_;      // guards what follows
+  std::condition_variable work_;  // for workers: there is a job, or an end
+  std::condition_variable done_;  // for the caller: there is a result, or a fault
   std::deque<Job> queue_;
   std::map<Key, SampleRecord> results_;  // of this generation
   std::optional<SimulatorInfo> info_;

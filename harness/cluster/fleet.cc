@@ -1,6 +1,7 @@
 #include "harness/cluster/fleet.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <utility>
 
@@ -11,6 +12,8 @@
 
 namespace parallax::harness {
 namespace {
+
+constexpr std::size_t kMostNames = 6;  // of files that differ
 
 /// Reasons may end with lines that a worker wrote; the first line is ours.
 std::string first_line(const std::string& text) {
@@ -30,12 +33,23 @@ void add_notes(base::DiagnosticBuilder warning, const std::string& text) {
   }
 }
 
+/// Which files make the builds differ; empty: one of them does not say.
+std::string difference(const ProgramIdentity& there, const ProgramIdentity& here) {
+  auto names = differing_objects(there, here);
+  if (names.empty()) return {};
+  if (names.size() > kMostNames) {
+    names.resize(kMostNames);
+    names.emplace_back("...");
+  }
+  return fmt::format("not the same: {}", fmt::join(names, ", "));
+}
+
 }  // namespace
 
 Fleet::Fleet(std::vector<WorkerPlace> places, FleetOptions options) : options_(std::move(options)) {
   for (auto& place : places) {
     place_of_.insert(place_of_.end(), static_cast<std::size_t>(place.slots), places_.size());
-    places_.push_back({std::move(place), {}, 0, {}, 0, {}, {}});
+    places_.push_back({std::move(place), {}, 0, {}, 0, {}, {}, {}});
   }
   usable_ = place_of_.size();
   in_use_.resize(usable_);
@@ -69,10 +83,23 @@ void Fleet::drop(Slot slot) {
   if (--usable_ == 0 && options_.stop != nullptr) options_.stop->store(true);
 }
 
-void Fleet::refuse(Slot slot, const ProgramIdentity& found) {
+void Fleet::set_self(ProgramIdentity self) {
   const std::lock_guard lock(mutex_);
-  places_[place_of_[slot]].refused = found;
+  if (options_.self.version.empty()) options_.self = std::move(self);
+}
+
+bool Fleet::admit(Slot slot, const ProgramIdentity& found) {
+  const std::lock_guard lock(mutex_);
+  if (found == options_.self) return true;
+  auto& place = places_[place_of_[slot]];
+  // Another version may say and understand other things.
+  if (options_.mixed && found.version == options_.self.version) {
+    place.mixed_in = found;
+    return true;
+  }
+  place.refused = found;
   drop(slot);
+  return false;
 }
 
 void Fleet::give_up(Slot slot, const std::string& why) {
@@ -121,7 +148,9 @@ void Fleet::report_refused(const ProgramIdentity& found, const std::string& plac
   if (found.version == self.version && found.build == self.build && !found.arithmetic.empty()) {
     sink.error_about(codes::kWorkerArithmetic, place, found.arithmetic, self.arithmetic);
   } else {
-    sink.error_about(codes::kWorkerRefused, place, to_string(found), to_string(self));
+    auto warning =
+        sink.error_about(codes::kWorkerRefused, place, to_string(found), to_string(self));
+    if (const auto what = difference(found, self); !what.empty()) warning.note(what);
   }
 }
 
@@ -135,6 +164,12 @@ bool Fleet::report(base::DiagnosticSink& sink,
           "`{}` says {} before the handshake: {}", text,
           place.banner.lines == 1 ? "a line" : fmt::format("{} lines", place.banner.lines),
           base::printable(place.banner.first)));
+    }
+    if (place.mixed_in) {
+      const auto what = difference(*place.mixed_in, options_.self);
+      remark(fmt::format("`{}` is of another kind: parallax {}, here {}{}", text,
+                         to_string(*place.mixed_in), to_string(options_.self),
+                         what.empty() ? "" : "; " + what));
     }
     if (place.losses > 0) {
       remark(fmt::format(

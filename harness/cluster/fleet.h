@@ -22,7 +22,10 @@ namespace parallax::harness {
 struct FleetOptions {
   ProgramIdentity self;  // what a worker has to be
   WorkerLink::Limits limits;
-  std::size_t first_slot = 0;         // is taken first, then those behind it, then those before it
+  std::size_t first_slot = 0;  // is taken first, then those behind it, then those before it
+  /// Workers of another build, or on processors that calculate otherwise, take part. Their
+  /// simulations say so, and none is made twice: two workers need not give the same result.
+  bool mixed = false;
   std::atomic<bool>* stop = nullptr;  // raised when no place is left; outlives the fleet
 };
 
@@ -37,6 +40,9 @@ class Fleet : public std::enable_shared_from_this<Fleet> {
   /// takes a slot when it is asked for the first time, and another one where that is given up.
   std::unique_ptr<RemoteSimulator> simulator(std::vector<std::string> worker);
 
+  /// Says which program workers have to be, unless it was said before.
+  void set_self(ProgramIdentity self);
+
   /// Reports what became of places (kWorkerRefused, kPlaceGivenUp, kWorkersDiffer, kNoWorkerLeft),
   /// and hands on what may be of interest besides. False: there is no result, as the workers did
   /// not have the same simulator.
@@ -50,8 +56,8 @@ class Fleet : public std::enable_shared_from_this<Fleet> {
   std::optional<Slot> take();
   void give_back(Slot slot);
   const WorkerPlace& place(Slot slot) const { return places_[place_of_[slot]].place; }
-  /// Another program is there. The slot is not given to anybody again, as below.
-  void refuse(Slot slot, const ProgramIdentity& found);
+  /// May this program work there? If not, the slot is not given to anybody again, as below.
+  bool admit(Slot slot, const ProgramIdentity& found);
   void give_up(Slot slot, const std::string& why);
   void note_banner(Slot slot, const Banner& banner);
   /// A worker was lost that had been there.
@@ -68,7 +74,7 @@ class Fleet : public std::enable_shared_from_this<Fleet> {
     std::string last_loss;
     std::int64_t given_up = 0;  // slots
     std::string why;            // of the last one of these
-    std::optional<ProgramIdentity> refused;
+    std::optional<ProgramIdentity> refused, mixed_in;
   };
   struct Agreed {
     std::string info, name;

@@ -11,12 +11,11 @@
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "compiler/base/sha256.h"
-#include "harness/simulator/arithmetic.h"
 
 namespace parallax::harness {
 namespace {
 
-constexpr std::size_t kBuildDigits = 16;
+constexpr std::size_t kBuildDigits = 16, kObjectDigits = 8;
 constexpr const char* kKey = "parallax_worker";
 
 std::size_t aligned(std::size_t size) { return (size + 3) / 4 * 4; }
@@ -60,15 +59,45 @@ int add_object(dl_phdr_info* info, std::size_t /*size*/, void* objects) {
   return 0;
 }
 
+std::map<std::string, std::string> digits_by_name(const std::vector<std::string>& objects) {
+  std::map<std::string, std::string> out;
+  for (const auto& object : objects) {
+    const auto end = object.find('\0');
+    out.emplace(object.substr(0, end),
+                base::sha256_hex(object.substr(end + 1)).substr(0, kObjectDigits));
+  }
+  return out;
+}
+
 }  // namespace
 
-ProgramIdentity this_program(std::string version) {
+ProgramIdentity this_program(std::string version, std::string arithmetic) {
   std::vector<std::string> objects;
   ::dl_iterate_phdr(add_object, &objects);
   std::sort(objects.begin(), objects.end());
   std::string all;
   for (const auto& object : objects) all += object + '\0';
-  return {std::move(version), base::sha256_hex(all).substr(0, kBuildDigits), arithmetic_digits()};
+  return {std::move(version), base::sha256_hex(all).substr(0, kBuildDigits), std::move(arithmetic),
+          digits_by_name(objects)};
+}
+
+std::vector<std::string> differing_objects(const ProgramIdentity& there,
+                                           const ProgramIdentity& here) {
+  std::vector<std::string> out;
+  if (there.objects.empty() || here.objects.empty()) return out;
+  const auto shown = [](const std::string& name) { return name.empty() ? "parallax" : name; };
+  for (const auto& [name, digits] : there.objects) {
+    const auto own = here.objects.find(name);
+    if (own == here.objects.end()) {
+      out.push_back(shown(name) + " (there only)");
+    } else if (own->second != digits) {
+      out.push_back(shown(name));
+    }
+  }
+  for (const auto& [name, digits] : here.objects) {
+    if (!there.objects.contains(name)) out.push_back(shown(name) + " (here only)");
+  }
+  return out;
 }
 
 std::string to_string(const ProgramIdentity& identity) {
@@ -80,7 +109,8 @@ std::string greeting_line(const ProgramIdentity& identity) {
   return base::json_text(nlohmann::ordered_json{{kKey, 1},
                                                 {"version", identity.version},
                                                 {"build", identity.build},
-                                                {"arithmetic", identity.arithmetic}});
+                                                {"arithmetic", identity.arithmetic},
+                                                {"objects", identity.objects}});
 }
 
 std::optional<ProgramIdentity> parse_greeting(std::string_view line) {
@@ -96,7 +126,14 @@ std::optional<ProgramIdentity> parse_greeting(std::string_view line) {
   if (!is || !built) return std::nullopt;
   const auto* digits = base::json_member(json, "arithmetic");
   auto arithmetic = digits == nullptr ? std::nullopt : base::json_as<std::string>(*digits);
-  return ProgramIdentity{*std::move(is), *std::move(built), arithmetic.value_or("")};
+  ProgramIdentity out{*std::move(is), *std::move(built), arithmetic.value_or(""), {}};
+  // For words alone, so that what is not as expected is left out.
+  const auto* objects = base::json_member(json, "objects");
+  if (objects == nullptr || !objects->is_object()) return out;
+  for (const auto& [name, number] : objects->items()) {
+    if (number.is_string()) out.objects.emplace(name, number.get<std::string>());
+  }
+  return out;
 }
 
 }  // namespace parallax::harness

@@ -79,9 +79,8 @@ bool RemoteWorker::shake_hands() {
   fleet_->note_banner(*slot_, link_->banner());
   if (auto* why = std::get_if<std::string>(&greeting)) return fail(std::move(*why));
   const auto& found = std::get<ProgramIdentity>(greeting);
-  if (found != fleet_->options().self) {
+  if (!fleet_->admit(*slot_, found)) {
     fail({});
-    fleet_->refuse(*slot_, found);
     slot_.reset();
     return false;
   }
@@ -95,6 +94,11 @@ bool RemoteWorker::shake_hands() {
     return fail({});
   }
   info_ = std::move(hello->info);
+  if (fleet_->options().mixed) {
+    kind_ = found.kind();
+    // One worker repeats its simulations bit for bit; another one need not give the same bits.
+    if (info_.determinism == "bitwise") info_.determinism = "tolerance";
+  }
   return true;
 }
 

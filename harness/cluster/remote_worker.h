@@ -32,6 +32,7 @@ class RemoteWorker final : public RemoteSimulator {
   bool ready() override;
   void throw_when_gone(bool throws) override { throws_ = throws; }
   void interrupt() override { interrupted_.store(true); }
+  std::string kind() const override { return kind_; }
 
   SimulatorInfo info() override { return info_; }
   Outcome reset(const State& initial, std::uint64_t seed) override;
@@ -56,6 +57,7 @@ class RemoteWorker final : public RemoteSimulator {
   std::string why_;                              // the last start failed, or the worker was lost
   std::unique_ptr<WorkerLink> link_;             // null: there is no worker
   SimulatorInfo info_;
+  std::string kind_;  // of the last worker, where they may be of several
   double record_interval_s_ = 0.0;
   PoseIntake poses_;
 };

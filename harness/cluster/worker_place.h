@@ -17,7 +17,7 @@ struct WorkerPlace {
   std::int64_t slots = 1;           // workers at the same time
 };
 
-inline constexpr std::int64_t kMostSlots = 256;  // of all places together
+inline constexpr std::int64_t kMostSlots = 1024;  // of all places together
 
 /// The place of `--launcher`. Reports kBadLauncher.
 base::Result<WorkerPlace> launcher_place(const std::string& text, std::int64_t slots,

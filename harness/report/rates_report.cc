@@ -12,6 +12,7 @@
 #include "harness/confidence/rounding.h"
 #include "harness/report/law_json.h"
 #include "harness/report/report.h"
+#include "harness/report/report_words.h"
 #include "harness/simulator/state_json.h"
 
 namespace parallax::harness {
@@ -203,6 +204,7 @@ std::string rates_text(const RatesResult& result) {
     for (const auto& value : trace.values) out += value_text(value, trace);
   }
   for (const auto& bound : result.bounds) out += fmt::format("\nbound: {}\n", bound);
+  if (!result.kinds.empty()) out += fmt::format("\nworkers: {}\n", kinds_text(result.kinds));
   if (result.complete && result.traces.empty()) out += "\nno trace, so nothing was simulated\n";
   for (const auto& bound : result.bounds) out += fmt::format("\nnot all traces: {}\n", bound);
   if (!result.complete) out += "\nstopped before all runs were made\n";
@@ -266,6 +268,9 @@ std::string rates_json(const RatesResult& result) {
     }
     if (result.indifference)
       add_sequential(*result.indifference, trace.sequential, object["claim"]);
+  }
+  for (const auto& one : result.kinds) {
+    document["kinds"].push_back({{"kind", one.kind}, {"simulations", one.simulations}});
   }
   if (!result.bounds.empty()) document["bounds"] = result.bounds;
   return base::json_text(document) + "\n";

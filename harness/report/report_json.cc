@@ -322,6 +322,9 @@ OrderedJson json_of(const CampaignResult& result, bool with_timing, bool with_fi
       if (!one.detail.empty()) told["detail"] = one.detail;
     }
   }
+  for (const auto& one : result.kinds) {
+    out["kinds"].push_back({{"kind", one.kind}, {"simulations", one.simulations}});
+  }
   if (!result.coverage.empty()) {
     for (const auto& share : result.coverage) {
       out["coverage"][share.group] = {{"covered", share.covered}, {"all", share.all}};
@@ -369,7 +372,8 @@ std::string replay_json(const ReplayResult& result) {
                      {"timepoints", result.timepoints},
                      {"digest", result.digest}};
   if (!result.reason.empty()) out["reason"] = result.reason;
-  if (result.other_arithmetic) out["other_arithmetic"] = true;
+  if (result.machine.arithmetic) out["other_arithmetic"] = true;
+  if (result.machine.build) out["other_build"] = true;
   if (const auto& difference = result.difference) {
     out["difference"] = {{"timepoint", difference->timepoint},
                          {"variable", difference->variable},

@@ -330,6 +330,7 @@ class Summary {
     if (!ignored.empty())
       line("without", fmt::format("{}: not compared", fmt::join(ignored, ", ")));
     line("criterion", criterion_text(result_.criterion, result_.spending));
+    if (!result_.kinds.empty()) line("workers", kinds_text(result_.kinds));
     if (!result_.coverage.empty()) line("covered", coverage_shares_text(result_));
   }
 

@@ -370,6 +370,7 @@ class TextReport {
     }
     for (const auto& bound : result_.bounds) line("bound", bound);
     line("simulations", fmt::format("{}", result_.simulations));
+    if (!result_.kinds.empty()) line("workers", kinds_text(result_.kinds));
     if (!result_.coverage.empty()) {
       line("covered",
            fmt::format("{}; `parallax coverage {}` names the rest", coverage_shares_text(result_),
@@ -423,6 +424,8 @@ namespace {
 constexpr std::string_view kOtherArithmetic =
     "it was recorded on a processor that calculates differently (other results of the mathematical "
     "library in their last digits), so that a difference is to be expected here";
+constexpr std::string_view kOtherBuild =
+    "it was recorded by another build of the program or of a library that it loads";
 }  // namespace
 
 std::string replay_text(const ReplayResult& result, const ReportStyle& style) {
@@ -446,7 +449,8 @@ std::string replay_text(const ReplayResult& result, const ReportStyle& style) {
   return head + paint("differs", "1;31") +
          fmt::format(" first at timepoint {} in {}\n", difference.timepoint, difference.variable) +
          table({{"recorded", difference.recorded}, {"repeated", difference.repeated}}, 2) +
-         (result.other_arithmetic ? wrapped("  note      ", kOtherArithmetic, 12) : "");
+         (result.machine.arithmetic ? wrapped("  note      ", kOtherArithmetic, 12) : "") +
+         (result.machine.build ? wrapped("  note      ", kOtherBuild, 12) : "");
 }
 
 }  // namespace parallax::harness

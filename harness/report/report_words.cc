@@ -1,6 +1,7 @@
 #include "harness/report/report_words.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -56,6 +57,17 @@ std::string confirmation(const Discrepancy& found) {
 
 std::string exploration_text(const CampaignResult& result) {
   return result.exploration == "stopped" ? "stopped before all were explored" : result.exploration;
+}
+
+std::string kinds_text(const std::vector<KindCount>& kinds) {
+  std::vector<std::string> parts;
+  for (const auto& one : kinds) {
+    parts.push_back(fmt::format("{} {} by {}", one.simulations,
+                                base::agreed(one.simulations, "simulation", "simulations"),
+                                one.kind));
+  }
+  return fmt::format("of {} (--mixed), not repeated bit for bit: {}",
+                     kinds.size() == 1 ? "one kind" : "several kinds", fmt::join(parts, ", "));
 }
 
 std::string coverage_shares_text(const CampaignResult& result) {

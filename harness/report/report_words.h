@@ -28,6 +28,8 @@ std::string confirmation(const Discrepancy& found);
 std::string exploration_text(const CampaignResult& result);
 /// "4 of 4 performs, 5 of 8 branches"; empty if it was not looked at.
 std::string coverage_shares_text(const CampaignResult& result);
+/// "of several kinds (--mixed), not repeated bit for bit: 80 simulations by 5f2c.../81d0..., ..."
+std::string kinds_text(const std::vector<KindCount>& kinds);
 /// "12 runs, 30 % (95 % interval 21.2 to 40.1 %)"
 std::string rate_words(const LoopResult& loop, const CauseRate& rate);
 /// "12 of 14 behaviours of plan and model were shown; each of the others comes ..."

@@ -98,6 +98,7 @@ std::string samples_jsonl(const std::vector<SampleRow>& rows) {
       margins.push_back({{"event", i}, {"margins", state_json<OrderedJson>(row.margins[i])}});
     }
     object["margins"] = std::move(margins);
+    if (!row.kind.empty()) object["kind"] = row.kind;
     out += base::json_text(object) + '\n';
   }
   return out;

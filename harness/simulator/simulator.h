@@ -163,6 +163,9 @@ class RemoteSimulator : public Simulator {
   virtual void throw_when_gone(bool throws) = 0;
   /// May be called by any thread: nothing that this simulator is at is wanted any more.
   virtual void interrupt() = 0;
+  /// The kind of the worker at work, where workers may be of several kinds whose results differ in
+  /// last digits; else empty.
+  virtual std::string kind() const { return {}; }
 };
 
 }  // namespace parallax::harness

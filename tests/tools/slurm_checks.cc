@@ -5,12 +5,10 @@
 
 #include <algorithm>
 #include <csignal>
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "tests/tools/cluster_fixture.h"
+#include "tests/tools/slurm_fixture.h"
 #include "tests/tools/suite/case_repository.h"
 #include "tests/tools/two_models.h"
 
@@ -18,61 +16,6 @@ namespace parallax::test {
 namespace {
 
 using Json = nlohmann::json;
-
-/// The block of the page whose second line names this file.
-std::string script_of_page(const std::string& name) {
-  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/guide/clusters.md");
-  std::string block;
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with("    ")) {
-      block += line.substr(4) + '\n';
-      continue;
-    }
-    if (block.find("\n# " + name + "\n") != std::string::npos) return block;
-    block.clear();
-  }
-  throw std::runtime_error("docs/guide/clusters.md has no script " + name);
-}
-
-/// A command of Slurm in the fixture's folder, for whose jobs `parallax` is this build's.
-ProcessResult slurm(const CliFixture& cli, std::vector<std::string> command) {
-  const auto path = std::string(PARALLAX_BINARY_DIR) + ":" + std::getenv("PATH");
-  command.insert(command.begin(), {"/usr/bin/env", "PATH=" + path});
-  ProcessOptions options;
-  options.folder = cli.folder().string();
-  return run_process(command, options);
-}
-
-std::vector<std::string> lines(const std::string& text) {
-  std::vector<std::string> out;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) out.push_back(line);
-  return out;
-}
-
-/// Jobs that have not ended, as `squeue` prints them.
-std::vector<std::string> jobs(const CliFixture& cli, const std::string& format,
-                              std::vector<std::string> more = {}) {
-  more.insert(more.begin(), {"squeue", "-h", "-r", "-o", format});
-  const auto found = slurm(cli, more);
-  REQUIRE(found.code == 0);
-  return lines(found.out);
-}
-
-void wait_for_no_job(const CliFixture& cli) {
-  for (int i = 0; i < 3000 && !jobs(cli, "%i").empty(); ++i) {
-    run_process({"sleep", "0.05"});
-  }
-  CHECK(jobs(cli, "%i %j %T").empty());
-}
-
-std::string submit(const CliFixture& cli, std::vector<std::string> words) {
-  words.insert(words.begin(), {"sbatch", "--parsable"});
-  const auto found = slurm(cli, words);
-  CAPTURE(found.err);
-  REQUIRE(found.code == 0);
-  return found.out.substr(0, found.out.find('\n'));
-}
 
 Json results_of(const CliFixture& cli, int part) {
   std::ifstream in(cli.folder() / ("out/" + std::to_string(part) + "/results.json"));
@@ -154,14 +97,6 @@ TEST_CASE("a sweep over seeds in one array is the suites of these seeds") {
   }
 }
 
-const std::vector<std::string> kRun = {"run", "scenario.yaml", "--record", "all", "--out", "run"};
-
-std::vector<std::string> with(std::vector<std::string> words,
-                              const std::vector<std::string>& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
 TEST_CASE("a campaign whose workers srun starts is that of one machine, also if one is cancelled") {
   const CliFixture here, there;
   CHECK(here.parallax(kRun).code == 0);
@@ -170,11 +105,7 @@ TEST_CASE("a campaign whose workers srun starts is that of one machine, also if 
   options.signal_when = [&] {
     if (cancelled) return 0;
     // Some simulations are done, so that there are workers at others.
-    std::ifstream journal(there.folder() / "run/journal.ndjson");
-    std::string line;
-    int count = 0;
-    while (std::getline(journal, line)) ++count;
-    if (count < 10) return 0;
+    if (journal_lines(there) < 10) return 0;
     const auto running = jobs(there, "%i", {"-t", "R"});
     if (running.empty()) return 0;
     cancelled = slurm(there, {"scancel", running.front()}).code == 0;
@@ -207,13 +138,7 @@ TEST_CASE("no job is left where the campaign is killed") {
   for (const int signal : {SIGTERM, SIGKILL}) {
     const CliFixture cli;
     ProcessOptions options;
-    options.signal_when = [&] {
-      std::ifstream journal(cli.folder() / "run/journal.ndjson");
-      std::string line;
-      int count = 0;
-      while (std::getline(journal, line)) ++count;
-      return count > 5 ? signal : 0;
-    };
+    options.signal_when = [&] { return journal_lines(cli) > 5 ? signal : 0; };
     const auto ended =
         cli.parallax(with(kRun, {"--launcher", "srun --quiet -n1 -c1", "--jobs", "3"}), options);
     CHECK(ended.code == 128 + signal);

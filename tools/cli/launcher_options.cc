@@ -1,6 +1,7 @@
 #include "tools/cli/launcher_options.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -8,13 +9,23 @@
 #include <utility>
 
 #include "compiler/base/codes/files.h"
-#include "tools/app/version.h"
 #include "tools/cli/limits.h"
 
 namespace parallax::tools {
 namespace {
 
 constexpr double kBeatsInSilence = 5.0;  // all but one of these may be lost on the way
+
+/// A worker takes three pipes, and the usual limit of open files is 1,024. If it cannot be raised,
+/// workers beyond it do not start, which is told.
+void allow_files_for(std::int64_t workers) {
+  constexpr rlim_t kPerWorker = 4, kOthers = 256;
+  const auto needed = kPerWorker * static_cast<rlim_t>(workers) + kOthers;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= needed) return;
+  limit.rlim_cur = std::min(needed, limit.rlim_max);
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+}
 
 }  // namespace
 
@@ -49,10 +60,24 @@ void add_launcher_options(OptionTable& command, LauncherOptions& options) {
       .show_default();
 }
 
+void add_mixed_option(OptionTable& command, LauncherOptions& options) {
+  const UnderHeading heading(command, "Workers on other machines");
+  command
+      .flag("--mixed", options.mixed,
+            "Let workers of another build, or on other processors, take part")
+      .details(
+          "Their results may differ in last digits, so that nothing is repeated bit for bit. The "
+          "journal names the kind of each simulation, and the report counts them.");
+}
+
 base::Result<std::shared_ptr<harness::Fleet>> fleet_of(const LauncherOptions& options,
                                                        std::int64_t& jobs, Invocation& invocation) {
   auto& sink = invocation.sink();
   if (options.launcher.empty() && options.hosts.empty()) {
+    if (options.mixed) {
+      return sink.error_about(codes::kUsage, "--mixed",
+                              "it is about workers of --launcher or --hosts");
+    }
     return std::shared_ptr<harness::Fleet>();
   }
   if (!options.launcher.empty() && !options.hosts.empty()) {
@@ -69,11 +94,14 @@ base::Result<std::shared_ptr<harness::Fleet>> fleet_of(const LauncherOptions& op
     if (!read) return sink.already_reported();
     places = *std::move(read);
   }
+  std::int64_t slots = 0;
+  for (const auto& place : places) slots += place.slots;
+  allow_files_for(slots);
   harness::FleetOptions fleet;
-  fleet.self = harness::this_program(kVersion);
   fleet.limits = {options.start_s, options.silence_s};
   fleet.first_slot = static_cast<std::size_t>(options.first_slot);
   fleet.stop = &stop_flag();
+  fleet.mixed = options.mixed;
   auto made = std::make_shared<harness::Fleet>(std::move(places), std::move(fleet));
   jobs = options.jobs_given ? std::min(jobs, made->slots()) : made->slots();
   return made;
@@ -102,14 +130,16 @@ std::vector<std::string> fleet_worker(const ScenarioModel& loaded, const harness
 std::vector<std::string> launcher_words(const LauncherOptions& options) {
   if (options.launcher.empty() && options.hosts.empty()) return {};
   const bool hosts = options.launcher.empty();
-  return {hosts ? "--hosts" : "--launcher",
-          hosts ? options.hosts : options.launcher,
-          "--worker-start",
-          fmt::format("{}", options.start_s),
-          "--worker-silence",
-          fmt::format("{}", options.silence_s),
-          "--jobs",
-          "1"};
+  std::vector<std::string> words = {hosts ? "--hosts" : "--launcher",
+                                    hosts ? options.hosts : options.launcher,
+                                    "--worker-start",
+                                    fmt::format("{}", options.start_s),
+                                    "--worker-silence",
+                                    fmt::format("{}", options.silence_s),
+                                    "--jobs",
+                                    "1"};
+  if (options.mixed) words.emplace_back("--mixed");
+  return words;
 }
 
 bool report_fleet(const std::shared_ptr<harness::Fleet>& fleet, Invocation& invocation) {

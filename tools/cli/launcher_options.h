@@ -18,8 +18,11 @@ struct LauncherOptions {
   double start_s = 120.0, silence_s = 30.0;
   std::int64_t first_slot = 0;
   bool jobs_given = false;  // for the command's --jobs
+  bool mixed = false;       // workers may be of other kinds than this program
 };
 void add_launcher_options(OptionTable& command, LauncherOptions& options);
+/// Adds --mixed, to a command whose results may come of several kinds of workers.
+void add_mixed_option(OptionTable& command, LauncherOptions& options);
 
 /// The places that the options name; null if they name none. `jobs` becomes the number of workers.
 /// Reports kUsage and what reading places reports.

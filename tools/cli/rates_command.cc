@@ -336,10 +336,11 @@ Command rates_command() {
       .check(SeedNumber{})
       .show_default();
   command.option("-j,--jobs", options->rates.jobs, "Simulations at the same time")
-      .check(WholeNumber{1, 256})
+      .check(WholeNumber{1, harness::kMostSlots})
       .show_default()
       .given(options->launcher.jobs_given);
   add_launcher_options(command, options->launcher);
+  add_mixed_option(command, options->launcher);
   SampleOutput::add_option(command, options->samples);
   command.heading("What is written");
   command

@@ -208,7 +208,7 @@ Command repair_command() {
           kRunsInPhysics, kRunsInModel))
       .check(WholeNumber{0, 1'000'000});
   command.option("-j,--jobs", options->experiments.jobs, "Of --runs: simulations at the same time")
-      .check(WholeNumber{1, 256})
+      .check(WholeNumber{1, harness::kMostSlots})
       .show_default()
       .given(options->launcher.jobs_given);
   add_launcher_options(command, options->launcher);

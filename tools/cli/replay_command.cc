@@ -11,6 +11,7 @@
 #include "harness/recording/recording_file.h"
 #include "harness/report/report.h"
 #include "tools/app/file_kind.h"
+#include "tools/app/own_identity.h"
 #include "tools/app/recorded_run.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
@@ -61,8 +62,12 @@ int replay(const ReplayOptions& options, Invocation& invocation) {
   const auto simulator = permitted_simulator(*loaded, options.commands.allow, invocation);
   if (!simulator) return 0;
   std::optional<harness::Recording> moved;
-  const auto result = harness::replay_sample(*run, loaded->sources_hash, *simulator,
-                                             options.record ? &moved : nullptr);
+  auto result = harness::replay_sample(*run, loaded->sources_hash, *simulator,
+                                       options.record ? &moved : nullptr);
+  if (result.outcome == harness::ReplayOutcome::kDiffers) {
+    const auto self = own_identity(loaded->scenario);
+    result.machine = harness::machine_change(run->header, run->record, self.arithmetic, self.build);
+  }
   if (result.outcome == harness::ReplayOutcome::kCannot) {
     sink.error_about(codes::kReplayImpossible, options.run.folder, result.reason);
     return 0;

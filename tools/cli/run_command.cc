@@ -15,6 +15,7 @@
 #include "tools/app/closed_loop.h"
 #include "tools/app/earlier_runs.h"
 #include "tools/app/kept_inputs.h"
+#include "tools/app/own_identity.h"
 #include "tools/app/run_coverage.h"
 #include "tools/app/scenario_check.h"
 #include "tools/app/scenario_model.h"
@@ -131,6 +132,9 @@ harness::CampaignOptions campaign_options(const RunOptions& options, const Scena
   campaign.start_folder = std::filesystem::current_path(error).string();
   campaign.scenario_hash = loaded.sources_hash;
   campaign.tool_version = kVersion;
+  // Before anything loads modules that the scenario does not need.
+  record_identity(loaded.scenario, campaign);
+  campaign.mixed = options.launcher.mixed;
   campaign.stop = &stop_flag();
   campaign.progress = progress_on_terminal(invocation.options());
   return campaign;
@@ -372,10 +376,11 @@ Command run_command() {
       .check(SeedNumber{})
       .show_default();
   command.option("-j,--jobs", options->jobs, "Simulations at the same time")
-      .check(WholeNumber{1, 256})
+      .check(WholeNumber{1, harness::kMostSlots})
       .show_default()
       .given(options->launcher.jobs_given);
   add_launcher_options(command, options->launcher);
+  add_mixed_option(command, options->launcher);
   command.flag("--resume", options->resume, "Continue the run in the run folder");
   command
       .flag("--keep-going", options->keep_going,

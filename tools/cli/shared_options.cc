@@ -11,6 +11,7 @@
 #include "compiler/base/subprocess.h"
 #include "compiler/base/whole_number.h"
 #include "runtime/graph/model_traces.h"
+#include "tools/app/own_identity.h"
 #include "tools/app/simulator_factory.h"
 #include "tools/cli/command.h"
 #include "tools/cli/launcher_options.h"
@@ -212,6 +213,8 @@ base::Result<harness::SimulatorFactory> permitted_simulator(
   const auto& spec = loaded.scenario.simulator;
   harness::SimulatorFactory make;
   if (fleet) {
+    // By now the scenario has loaded its modules, as it will have there.
+    fleet->set_self(own_identity(loaded.scenario));
     make = [fleet, worker = fleet_worker(loaded, *fleet, invocation)] {
       return fleet->simulator(worker);
     };

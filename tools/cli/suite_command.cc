@@ -12,7 +12,7 @@
 #include "compiler/base/sha256.h"
 #include "compiler/base/words.h"
 #include "compiler/base/write_gate.h"
-#include "harness/simulator/arithmetic.h"
+#include "tools/app/own_identity.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
@@ -292,7 +292,7 @@ int run_suite(const SuiteOptions& given, Invocation& invocation) {
   if (!lock) return 0;
   SuiteIdentity identity{kVersion,
                          program_hash(),
-                         harness::arithmetic_digits(),
+                         own_arithmetic(),
                          options.seed,
                          *shard,
                          options.paths,
@@ -450,10 +450,11 @@ Command suite_command() {
       .check(WholeNumber{0, kMaxSeed})
       .show_default();
   command.option("-j,--jobs", options->jobs, "Cases at the same time")
-      .check(WholeNumber{1, 256})
+      .check(WholeNumber{1, harness::kMostSlots})
       .show_default()
       .given(options->launcher.jobs_given);
   add_launcher_options(command, options->launcher);
+  add_mixed_option(command, options->launcher);
   command
       .option("--memory", options->memory_mb,
               "MB that the cases at the same time may need together, by what they took before")

@@ -13,8 +13,8 @@
 #include "harness/config/scenario.h"
 #include "harness/robot/guarded_simulator.h"
 #include "harness/simulator/worker.h"
+#include "tools/app/own_identity.h"
 #include "tools/app/simulator_factory.h"
-#include "tools/app/version.h"
 #include "tools/app/world_model.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
@@ -55,7 +55,7 @@ int serve_elsewhere(const WorkerOptions& options, ScenarioModel loaded, Invocati
   const auto make = permitted_simulator(loaded, options.commands.allow, invocation);
   if (!make) return 0;
   harness::ServeOptions how;
-  how.greeting = harness::greeting_line(harness::this_program(kVersion));
+  how.greeting = harness::greeting_line(own_identity(loaded.scenario));
   how.beat_s = options.beat_s;
   how.stop = &stop_flag();
   const auto simulator = (*make)();

@@ -8,6 +8,7 @@
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
+#include "tools/app/own_identity.h"
 #include "tools/app/simulator_factory.h"
 
 namespace parallax::tools {
@@ -68,6 +69,7 @@ harness::CampaignOptions RoundFolder::campaign(const OpenRound& round) const {
   out.start_folder = fs::current_path(error).string();
   out.scenario_hash = round.loaded->sources_hash;
   out.tool_version = options_->tool_version;
+  record_identity(round.loaded->scenario, out);
   out.stop = &context_->stop();
   out.progress = options_->progress;
   return out;

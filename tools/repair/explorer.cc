@@ -22,6 +22,7 @@
 #include "harness/campaign/journal.h"
 #include "harness/campaign/trial.h"
 #include "tools/app/closed_loop.h"
+#include "tools/app/own_identity.h"
 #include "tools/app/version.h"
 
 namespace parallax::tools {
@@ -96,6 +97,7 @@ class SequenceExplorer {
     header.seed = options_.seed;
     header.scenario_hash = loaded_.sources_hash;
     header.tool_version = options_.tool_version;
+    record_identity(loaded_.scenario, header);
     header.keep_going = true;
     header.random_sequences = true;
     std::error_code error;

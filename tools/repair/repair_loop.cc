@@ -26,6 +26,7 @@
 #include "harness/campaign/campaign.h"
 #include "harness/report/report.h"
 #include "tools/app/closed_loop.h"
+#include "tools/app/own_identity.h"
 #include "tools/app/run_coverage.h"
 #include "tools/app/trace_feed.h"
 #include "tools/app/version.h"
@@ -205,6 +206,7 @@ class Rounds {
     options.start_folder = fs::current_path(error).string();
     options.scenario_hash = loaded.sources_hash;
     options.tool_version = kVersion;
+    record_identity(loaded.scenario, options);
     options.stop = &context_.stop();
     options.progress = options_.experiments.progress;
     auto& files = context_.files();

@@ -111,6 +111,7 @@ const std::vector<Message>& Model::warnings() const { return body_->warnings; }
 
 Explored Model::traces(std::int64_t limit, const std::function<bool(const Trace&)>& take,
                        const std::atomic<bool>* stop) const {
+  if (!take) throw Failure("Model::traces was given nobody to take the traces", {});
   const auto& model = body_->compilation.model;
   std::int64_t given = 0;
   const auto next = [&](const runtime::Trace& trace) {

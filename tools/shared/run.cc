@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <stdexcept>
 #include <utility>
 
 #include "compiler/base/codes/campaigns.h"
@@ -14,6 +13,7 @@
 #include "parallax/parallax.h"
 #include "tools/app/closed_loop.h"
 #include "tools/app/kept_inputs.h"
+#include "tools/app/own_identity.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/simulator_factory.h"
 #include "tools/app/trace_feed.h"
@@ -93,7 +93,7 @@ harness::SimulatorFactory simulator_of(const RunOptions& options,
   if (options.simulator) {
     return [make = options.simulator]() -> std::unique_ptr<harness::Simulator> {
       auto own = make();
-      if (!own) throw std::runtime_error("RunOptions::simulator made none");
+      if (!own) throw Failure("RunOptions::simulator made no simulator", {});
       return std::make_unique<Guest>(std::move(own));
     };
   }
@@ -178,6 +178,8 @@ Run run(const std::string& scenario, const RunOptions& options) {
   campaign.start_folder = std::filesystem::current_path(error).string();
   campaign.scenario_hash = loaded->sources_hash;
   campaign.tool_version = tools::kVersion;
+  // The program is the client's, so that its build says nothing.
+  campaign.arithmetic = tools::own_arithmetic(loaded->scenario.simulator.engine);
   campaign.stop = &stop;
   if (options.progress) {
     campaign.progress = [tell = options.progress](const harness::CampaignProgress& now) {

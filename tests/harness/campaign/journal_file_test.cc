@@ -1,5 +1,9 @@
 // The journal as a file: lines appended, read back, continued and rewritten.
 
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
 #include "harness/campaign/journal.h"
 #include "tests/harness/campaign/two_regions.h"
 
@@ -82,6 +86,31 @@ TEST_CASE("what was appended is found by the next one that opens the journal") {
   CHECK(*again->find(1, 2, DrawPhase::kCertify) == record(1, 2));
   CHECK(again->find(1, 2, DrawPhase::kConfirm) == nullptr);
   CHECK(again->find(2) == nullptr);
+}
+
+TEST_CASE("what many threads append is on disk when each goes on, in no more batches than lines") {
+  constexpr int kThreads = 24, kEach = 6;
+  File file;
+  const auto journal = file.open(header());
+  REQUIRE(journal != nullptr);
+  journal->append(line(1));
+  std::atomic<int> missing{0};
+  std::vector<std::thread> threads;
+  for (int i = 0; i < kThreads; ++i) {
+    threads.emplace_back([&, i] {
+      for (int k = 1; k <= kEach; ++k) {
+        const auto mine = record(1, i * kEach + k);
+        journal->append(mine);
+        if (file.text().find("\n" + encode(mine) + "\n") == std::string::npos) ++missing;
+      }
+    });
+  }
+  for (auto& thread : threads) thread.join();
+  CHECK(missing == 0);
+  CHECK(journal->write_error().empty());
+  CHECK(journal->batches() <= 2 + kThreads * kEach);
+  const auto text = file.text();
+  CHECK(std::count(text.begin(), text.end(), '\n') == 2 + kThreads * kEach);
 }
 
 TEST_CASE("a rewritten journal is in order, whatever the order of completion was") {

@@ -91,7 +91,7 @@ TEST_CASE("a file of hosts: slots, commands, comments") {
 
 TEST_CASE("wrong lines are reported where they are, all of them") {
   Hosts hosts;
-  CHECK_FALSE(hosts.read("ssh lab3\n0 ssh a\n257 ssh a\n3\n2 ssh $a\n1 ssh 'b\n-1 x\n2x y\n"));
+  CHECK_FALSE(hosts.read("ssh lab3\n0 ssh a\n1025 ssh a\n3\n2 ssh $a\n1 ssh 'b\n-1 x\n2x y\n"));
   const auto found = hosts.sink.sorted();
   REQUIRE(found.size() == 8);
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -107,7 +107,7 @@ TEST_CASE("no place, too many slots, no file") {
   CHECK_FALSE(none.read("# nothing\n"));
   CHECK(none.sink.error_count() == 1);
   Hosts many;
-  CHECK_FALSE(many.read("200 ssh a\n57 ssh b\n"));
+  CHECK_FALSE(many.read("1000 ssh a\n25 ssh b\n"));
   CHECK(many.sink.error_count() == 1);
   Hosts missing;
   CHECK_FALSE(read_hosts(missing.folder.path() / "no", missing.files, missing.sink));
@@ -125,15 +125,31 @@ TEST_CASE("a launcher that is no command is refused") {
 }
 
 TEST_CASE("who a worker says it is") {
-  const auto self = this_program("1.2.3");
+  const auto self = this_program("1.2.3", "0123456789abcdef");
   CHECK(self.build.size() == 16);
-  CHECK(self.arithmetic.size() == 16);
-  CHECK(this_program("1.2.3") == self);
-  CHECK(parse_greeting(greeting_line(self)) == self);
+  CHECK(self.kind() == self.build + "/0123456789abcdef");
+  CHECK(this_program("1.2.3", "0123456789abcdef") == self);
+  const auto read = parse_greeting(greeting_line(self));
+  REQUIRE(read);
+  CHECK(*read == self);
+  CHECK(read->objects == self.objects);
+  CHECK(self.objects.size() > 3);  // the program, C, C++, and more
+  CHECK(differing_objects(*read, self).empty());
   for (const auto* other : {"", "{}", "Welcome to parallax_worker", R"({"parallax_worker":1})",
                             R"({"parallax_worker":1,"version":3,"build":"x"})"}) {
     CHECK_FALSE(parse_greeting(other));
   }
+}
+
+TEST_CASE("builds that differ are told by the files that make them differ") {
+  ProgramIdentity here{"1", "a", "x", {{"", "11"}, {"libode.so.8", "22"}, {"libm.so.6", "33"}}};
+  ProgramIdentity there{"1", "b", "x", {{"", "11"}, {"libode.so.8", "23"}, {"libsdf.so", "44"}}};
+  CHECK(differing_objects(there, here) ==
+        std::vector<std::string>{"libode.so.8", "libsdf.so (there only)", "libm.so.6 (here only)"});
+  there.objects[""] = "12";
+  CHECK(differing_objects(there, here).front() == "parallax");
+  there.objects.clear();  // an older worker
+  CHECK(differing_objects(there, here).empty());
 }
 
 }  // namespace

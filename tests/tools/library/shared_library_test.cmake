@@ -35,6 +35,21 @@ expect(0 "^${counted} traces, counted and listed alike by four threads" ${WORK}/
 expect(0 "^${counted}\n" ${WORK}/build/host ${WORK}/build/counter.so ${WORK}/three.e)
 expect(3 "error" ${WORK}/build/host ${WORK}/build/counter.so ${WORK}/none.e)
 
+# The contract of every function of a client that is called, by a client that pkg-config builds. It has a
+# `runtime` folder of its own, which the library's headers must not hide.
+find_program(pkg_config pkg-config REQUIRED)
+file(GLOB_RECURSE pc ${WORK}/prefix/libparallax.pc)
+cmake_path(GET pc PARENT_PATH pc)
+execute_process(COMMAND ${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${pc} ${pkg_config} --cflags --libs libparallax
+  OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+separate_arguments(flags UNIX_COMMAND "${flags}")
+cmake_path(GET pc PARENT_PATH library)
+file(WRITE ${WORK}/own/runtime/trace/trace.h "#define OWN_HEADER 1\n")
+file(WRITE ${WORK}/own/main.h "#include \"runtime/trace/trace.h\"\n#if OWN_HEADER != 1\n#error another header\n#endif\n")
+run(c++ -std=c++20 -Wall -Wextra -Werror ${SOURCE}/tests/tools/library/callbacks.cc -o ${WORK}/callbacks ${flags}
+    -I${WORK}/own -include ${WORK}/own/main.h -Wl,-rpath,${library})
+expect(0 "^all hold" ${WORK}/callbacks ${regions}/scenario.yaml ${WORK}/three.e ${WORK}/callbacks.out)
+
 # The interface, and nothing of the house, is seen from outside.
 file(GLOB_RECURSE library ${WORK}/prefix/libparallax.so)
 execute_process(COMMAND nm -D --defined-only -C ${library} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)

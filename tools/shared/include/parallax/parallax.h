@@ -13,6 +13,12 @@
 // Failures are exceptions, px::Failure, with the messages that the program would print.
 // Functions may be called from several threads at the same time; one Model may be used by several,
 // too. Units are SI, angles radians.
+//
+// Functions of yours that are called: what reset, act and observe of a Simulator throw loses that
+// simulation, with the exception's text, and counts against the claim. What any other one throws
+// (MakeSimulator, Simulator::info, progress, the taker of traces) ends the call and reaches its
+// caller as it was thrown; what was simulated is in the journal, and `resume` goes on. `progress`
+// and MakeSimulator may be empty; a MakeSimulator that makes none, and an empty taker, are Failure.
 
 #include <atomic>
 #include <cstdint>
@@ -112,7 +118,7 @@ class PARALLAX_API Model {
 
   /// Hands the traces to `take` in canonical order, `limit` at most (0: all), until it returns
   /// false. What `take` throws reaches the caller. `stop`, raised by another thread, ends the
-  /// search.
+  /// search. Throws Failure where `take` is empty.
   Explored traces(std::int64_t limit, const std::function<bool(const Trace&)>& take,
                   const std::atomic<bool>* stop = nullptr) const;
   /// The number of traces in decimal, which may have hundreds of digits; of a model with a plan or
