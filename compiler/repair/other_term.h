@@ -23,7 +23,7 @@ struct OtherTerm {
     return out + ")";
   }
 };
-/// What the term of an axiom may have been meant to be.
+/// Terms that may have been meant in the place of an axiom's term.
 std::vector<OtherTerm> other_terms(const EditSubject& subject, const AxiomForm& form, NodeId term);
 
 /// Event and fluent of an effect with one argument of each exchanged.
