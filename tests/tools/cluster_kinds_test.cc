@@ -19,8 +19,8 @@ bool has(const std::string& text, const std::string& part) {
 
 const std::vector<std::string> kRun = {"run", "scenario.yaml", "--record", "none", "--out", "out"};
 
-std::vector<std::string> with(std::vector<std::string> words,
-                              const std::vector<std::string>& more) {
+std::vector<std::string> joined(std::vector<std::string> words,
+                                const std::vector<std::string>& more) {
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -43,7 +43,7 @@ std::string other_build(const Cluster& cli) {
 TEST_CASE("with --mixed other kinds take part, and each simulation names its kind") {
   const Cluster cli;
   cli.write("hosts", "1 " + other_build(cli) + "\n1 env\n");
-  const auto found = cli.parallax(with(kRun, {"--hosts", "hosts", "--mixed", "--json"}));
+  const auto found = cli.parallax(joined(kRun, {"--hosts", "hosts", "--mixed", "--json"}));
   CAPTURE(found.err);
   REQUIRE(found.code == 0);
   CHECK(has(found.err, "`sh build.sh` is of another kind: parallax "));
@@ -68,17 +68,17 @@ TEST_CASE("with --mixed other kinds take part, and each simulation names its kin
   }
   CHECK(has(cli.read("out/report.txt"), "of several kinds (--mixed)"));
 
-  const auto resume = with(kRun, {"--resume", "--max-runs", "200", "--launcher", "env"});
+  const auto resume = joined(kRun, {"--resume", "--max-runs", "200", "--launcher", "env"});
   const auto pure = cli.parallax(resume);
   CHECK(pure.code == 3);
   CHECK_MESSAGE(has(pure.err, "permission for workers of several kinds (--mixed)"), pure.err);
-  const auto on = cli.parallax(with(resume, {"--mixed"}));
+  const auto on = cli.parallax(joined(resume, {"--mixed"}));
   CHECK_MESSAGE(on.code == 0, on.err);
 }
 
 TEST_CASE("a simulation that another kind made says so when it is repeated") {
   const Cluster cli;
-  REQUIRE(cli.parallax(with(kRun, {"--launcher", other_build(cli), "--mixed"})).code == 0);
+  REQUIRE(cli.parallax(joined(kRun, {"--launcher", other_build(cli), "--mixed"})).code == 0);
   auto journal = cli.read("out/journal.ndjson");
   // A digit of an observation is another one, as if it were of another library.
   const std::regex observed(R"("box.x":([0-9]+)\.([0-9]+))");
@@ -138,17 +138,17 @@ TEST_CASE("a worker that is refused is told with the files that differ") {
 
 TEST_CASE("a run that another build began is not continued") {
   const Cluster cli;
-  REQUIRE(cli.parallax(with(kRun, {"--max-runs", "2"})).code == 4);
+  REQUIRE(cli.parallax(joined(kRun, {"--max-runs", "2"})).code == 4);
   auto journal = cli.read("out/journal.ndjson");
   const std::regex digits(R"("build":"[0-9a-f]{16}")");
   REQUIRE(std::regex_search(journal, digits));
-  const auto resume = with(kRun, {"--resume", "--max-runs", "3"});
+  const auto resume = joined(kRun, {"--resume", "--max-runs", "3"});
   CHECK(cli.parallax(resume).code == 4);
   cli.write("out/journal.ndjson",
             std::regex_replace(journal, digits, R"("build":"0123456789abcdef")"));
   const auto other = cli.parallax(resume);
   CHECK(other.code == 3);
-  CHECK_MESSAGE(has(other.err, "its program's build, or that of a library, is"), other.err);
+  CHECK_MESSAGE(has(other.err, "its program's build, or that of a library is"), other.err);
   // An older journal does not say.
   cli.write("out/journal.ndjson",
             std::regex_replace(journal, std::regex(R"("build":"[0-9a-f]{16}",)"), ""));
@@ -168,7 +168,7 @@ TEST_CASE("worlds that modules read or step are simulated elsewhere") {
       continue;
     }
     CHECK_MESSAGE(expected.code == 0, expected.err);
-    const auto found = cli.parallax(with(rates, {"--launcher", "env", "--jobs", "2"}));
+    const auto found = cli.parallax(joined(rates, {"--launcher", "env", "--jobs", "2"}));
     CHECK_MESSAGE(found.code == 0, found.err);
     CHECK(found.out == expected.out);
   }
@@ -178,7 +178,7 @@ TEST_CASE("a campaign with many workers that is killed outright loses nothing th
   const Cluster cli;
   cli.coin(0.0, "seeded");
   const std::vector<std::string> run = {"run", "coin.yaml", "--launcher", "env", "--jobs", "16"};
-  REQUIRE(cli.parallax(with(run, {"--out", "whole"})).code == 0);
+  REQUIRE(cli.parallax(joined(run, {"--out", "whole"})).code == 0);
   std::filesystem::remove(cli.folder() / "coin.log");
   const auto lines = [&] {
     std::ifstream in(cli.folder() / "cut/journal.ndjson");
@@ -188,11 +188,11 @@ TEST_CASE("a campaign with many workers that is killed outright loses nothing th
   };
   ProcessOptions options;
   options.signal_when = [&] { return lines() > 30 ? SIGKILL : 0; };
-  const auto cut = cli.parallax(with(run, {"--out", "cut"}), options);
+  const auto cut = cli.parallax(joined(run, {"--out", "cut"}), options);
   CHECK(cut.code == 128 + SIGKILL);
   const auto kept = lines();
   CHECK(kept > 30);
-  const auto rest = cli.parallax(with(run, {"--out", "cut", "--resume"}));
+  const auto rest = cli.parallax(joined(run, {"--out", "cut", "--resume"}));
   CHECK_MESSAGE(rest.code == 0, rest.err);
   auto text = cli.read("cut/journal.ndjson");
   CHECK(text == cli.read("whole/journal.ndjson"));

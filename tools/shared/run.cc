@@ -214,7 +214,9 @@ Run run(const std::string& scenario, const RunOptions& options) {
       fail(context);
   }
   if (result->failed) fail(context);
-  return told(*result, context);
+  auto out = told(*result, context);
+  out.scenario_hash = loaded->sources_hash;
+  return out;
 }
 
 }  // namespace parallax::api

@@ -155,7 +155,12 @@ void progress_throws(const std::string& scenario, const std::string& folder) {
   check(told >= 7, "progress was told before");
   options.progress = {};
   options.resume = true;
-  check(px::run(scenario, options).verdict == px::Verdict::kNoDiscrepancy, "resumed after a throw");
+  const auto run = px::run(scenario, options);
+  check(run.verdict == px::Verdict::kNoDiscrepancy, "resumed after a throw");
+  check(run.scenario_hash.size() == 32, "the hash of the scenario");
+  options.folder += " again";
+  options.resume = false;
+  check(px::run(scenario, options).scenario_hash == run.scenario_hash, "the same hash again");
 }
 
 void takers_throw(const std::string& file) {

@@ -215,6 +215,7 @@ struct Discrepancy {
 
 struct Run {
   Verdict verdict = Verdict::kInconclusive;
+  std::string scenario_hash;        // over every text that was read, as the journal has it
   std::string claim;                // of all traces together; empty: each is claimed by itself
   std::string exploration;          // what is known of traces that were not simulated
   std::vector<std::string> bounds;  // what was left out, a sentence each
