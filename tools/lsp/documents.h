@@ -6,6 +6,7 @@
 #include <string>
 
 #include "compiler/base/open_texts.h"
+#include "tools/lsp/name_map.h"
 #include "tools/lsp/positions.h"
 #include "tools/lsp/project.h"
 #include "tools/lsp/rpc.h"

@@ -6,9 +6,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,6 +19,7 @@
 #include "compiler/base/file_io.h"
 #include "compiler/syntax/formatter.h"
 #include "tools/lsp/diagnosis.h"
+#include "tools/lsp/file_text.h"
 #include "tools/lsp/name_answers.h"
 
 namespace parallax::tools::lsp {
@@ -40,6 +44,13 @@ std::string first_new_error(const std::map<std::string, std::vector<EditorMessag
   return {};
 }
 
+/// Can plans and tables have this name? Letters in them are lower case, whatever is typed.
+bool is_plan_word(std::string_view word) {
+  return !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
+    return is_word(c) ? std::isupper(static_cast<unsigned char>(c)) == 0 : c == '-' || c == '*';
+  });
+}
+
 }  // namespace
 
 Json name_range(Documents& documents, const Json& params) {
@@ -62,7 +73,10 @@ Json rename(Documents& documents, const Json& params) {
   const auto family = family_of(at.path, documents.text_of());
   const NameMap all(family, documents.text_of());
   const auto* name = all.at(at.path, at.offset);
-  if (name == nullptr || all.declared().contains(fresh)) {
+  const auto group = at.name->key.substr(0, at.name->key.size() - old.size());
+  if (is_of_plans(at.name->kind) && !is_plan_word(fresh))
+    throw Refused{RpcError::kFailed, fmt::format("`{}` is no name of a plan", fresh)};
+  if (name == nullptr || all.find(group + fresh) != nullptr) {
     throw Refused{RpcError::kFailed, fmt::format("`{}` is declared already", fresh)};
   }
   std::map<std::string, std::vector<NamedPlace>> by_path;

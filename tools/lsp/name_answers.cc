@@ -7,8 +7,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+#include <array>
 #include <string_view>
+#include <vector>
+
+#include "tools/lsp/file_text.h"
+#include "tools/lsp/yaml_answers.h"
 
 namespace parallax::tools::lsp {
 namespace {
@@ -44,9 +48,6 @@ std::string_view core_help(std::string_view word) {
 }
 
 std::string word_at(std::string_view text, std::size_t offset) {
-  const auto is_word = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-  };
   auto begin = offset, end = offset;
   while (begin > 0 && is_word(text[begin - 1])) --begin;
   while (end < text.size() && is_word(text[end])) ++end;
@@ -89,20 +90,25 @@ AskedPlace asked_place(Documents& documents, const Json& params) {
 
 Json hover(Documents& documents, const Json& params) {
   const auto at = asked_place(documents, params);
+  const auto& text = documents.text(at.path);
   std::string words;
   if (at.name != nullptr) {
+    const auto& names = documents.names(at.path);
     words = fmt::format("```\n{}\n```\n", at.name->declaration);
     if (!at.name->comment.empty()) words += at.name->comment + "\n\n";
+    if (const auto* event = names.find(at.name->event))
+      words += fmt::format("```\n{}\n```\n", event->declaration);
     constexpr std::size_t kMost = 8;
-    const auto effects = documents.names(at.path).effects(*at.name);
+    const auto effects = names.effects(*at.name);
     for (std::size_t i = 0; i < std::min(effects.size(), kMost); ++i) {
       words += fmt::format("```\n{}\n```\n", effects[i]);
     }
     if (effects.size() > kMost)
       words += fmt::format("and {} more effect axioms\n", effects.size() - kMost);
-    if (at.name->kind == NameKind::kSort) words += elements_of(*at.name, documents.names(at.path));
+    if (at.name->kind == NameKind::kSort) words += elements_of(*at.name, names);
   } else {
-    words = core_help(word_at(documents.text(at.path), at.offset));
+    words = is_yaml(at.path) ? yaml_hover(text, at.offset) : "";
+    if (words.empty()) words = core_help(word_at(text, at.offset));
   }
   if (words.empty()) return nullptr;
   return {{"contents", {{"kind", "markdown"}, {"value", words}}}};
@@ -111,7 +117,13 @@ Json hover(Documents& documents, const Json& params) {
 Json definition(Documents& documents, const Json& params) {
   const auto at = asked_place(documents, params);
   if (at.name == nullptr) return nullptr;
-  return locations(documents, {{at.name->path, at.name->begin, at.name->end}}).front();
+  auto out = locations(documents, {{at.name->path, at.name->begin, at.name->end}});
+  // An entry of a table also leads to the event that it performs.
+  if (const auto* event = documents.names(at.path).find(at.name->event)) {
+    out.push_back(locations(documents, {{event->path, event->begin, event->end}}).front());
+    return out;
+  }
+  return out.front();
 }
 
 Json references(Documents& documents, const Json& params) {
@@ -134,21 +146,28 @@ Json highlights(Documents& documents, const Json& params) {
 
 Json completion(Documents& documents, const Json& params) {
   const auto path = documents.asked_path(params);
+  const auto& text = documents.text(path);
   Json items = Json::array();
+  if (is_yaml(path)) {
+    const auto offset = documents.positions(path).offset(place_of(member(params, "position")));
+    items = yaml_completion(text, offset);
+  }
   const auto add = [&](std::string_view label, int kind, std::string_view detail) {
     items.push_back({{"label", label}, {"kind", kind}, {"detail", detail}});
   };
-  for (const auto& [name, declared] : documents.names(path).declared()) {
-    // Numbers of the protocol: class, constant, field, event, function.
-    static constexpr int kKinds[] = {7, 21, 5, 23, 3, 3};
-    add(name, kKinds[static_cast<std::size_t>(declared.kind)], declared.declaration);
+  const bool has_plan_names = is_plan(path) || is_table(path);
+  for (const auto& [key, declared] : documents.names(path).declared()) {
+    if (is_of_plans(declared.kind) && !has_plan_names) continue;
+    // Numbers of the protocol: class, constant, field, event, function, method.
+    static constexpr std::array<int, kNameKinds> kKinds = {7, 21, 5, 23, 3, 3, 2, 3};
+    add(declared.name, kKinds[static_cast<std::size_t>(declared.kind)], declared.declaration);
   }
   constexpr int kKeyword = 14;
   for (const auto* word : {"AntiTrajectory", "Happens", "HoldsAt", "Initiates", "ReleasedAt",
                            "Releases", "Terminates", "Trajectory"}) {
     add(word, kKeyword, "event calculus");
   }
-  if (path.ends_with(".e")) {
+  if (is_model(path)) {
     for (const auto* word : {"completion", "event", "fluent", "function", "load", "mutex",
                              "noninertial", "option", "predicate", "range", "sort", "xor"}) {
       add(word, kKeyword, "statement");
@@ -161,11 +180,12 @@ Json symbols(Documents& documents, const Json& params) {
   const auto path = documents.asked_path(params);
   const auto positions = documents.positions(path);
   Json out = Json::array();
-  for (const auto& [name, declared] : documents.names(path).declared()) {
+  for (const auto& [key, declared] : documents.names(path).declared()) {
     if (declared.path != path) continue;
-    static constexpr int kKinds[] = {5, 14, 8, 24, 12, 12};
+    // Class, constant, field, event, function, method.
+    static constexpr std::array<int, kNameKinds> kKinds = {5, 14, 8, 24, 12, 12, 6, 12};
     const auto range = range_of(positions, declared.begin, declared.end);
-    out.push_back({{"name", name},
+    out.push_back({{"name", declared.name},
                    {"detail", declared.declaration},
                    {"kind", kKinds[static_cast<std::size_t>(declared.kind)]},
                    {"range", range},

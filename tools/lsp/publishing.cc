@@ -1,6 +1,6 @@
-// What an editor shows about its files is what `check` says about everything that reads them. The
-// roots (scenarios, models) of all open files are checked one after the other; a message that two
-// roots give is told once, and a file whose messages are gone is told so.
+// An editor shows about its files what `check` says about everything that reads them. The roots
+// (scenarios, models) of all open files are checked one after the other; a message that two roots
+// give is told once, and a file whose messages are gone is told so.
 
 #include "tools/lsp/publishing.h"
 

@@ -24,14 +24,17 @@
 #include "tools/lsp/documents.h"
 #include "tools/lsp/edit_answers.h"
 #include "tools/lsp/frames.h"
+#include "tools/lsp/lenses.h"
 #include "tools/lsp/name_answers.h"
 #include "tools/lsp/publishing.h"
 #include "tools/lsp/rpc.h"
+#include "tools/lsp/semantic_tokens.h"
+#include "tools/lsp/yaml_answers.h"
 
 namespace parallax::tools::lsp {
 namespace {
 
-constexpr auto kQuiet = std::chrono::milliseconds(30);
+constexpr auto kQuiet = std::chrono::milliseconds(5);
 
 /// A question about open documents.
 struct Question {
@@ -39,7 +42,7 @@ struct Question {
   Json (*answer)(Documents& documents, const Json& params);
 };
 
-constexpr std::array<Question, 9> kQuestions = {{
+constexpr std::array<Question, 12> kQuestions = {{
     {"textDocument/hover", hover},
     {"textDocument/definition", definition},
     {"textDocument/references", references},
@@ -49,6 +52,9 @@ constexpr std::array<Question, 9> kQuestions = {{
     {"textDocument/completion", completion},
     {"textDocument/documentSymbol", symbols},
     {"textDocument/formatting", formatting},
+    {"textDocument/semanticTokens/full", semantic_tokens},
+    {"textDocument/codeLens", lenses},
+    {"textDocument/inlayHint", unit_hints},
 }};
 
 class EditorServer {
@@ -221,6 +227,11 @@ class EditorServer {
               {"completionProvider", {{"resolveProvider", false}}},
               {"documentSymbolProvider", true},
               {"documentFormattingProvider", true},
+              {"semanticTokensProvider",
+               {{"legend", {{"tokenTypes", token_legend()}, {"tokenModifiers", Json::array()}}},
+                {"full", true}}},
+              {"codeLensProvider", {{"resolveProvider", false}}},
+              {"inlayHintProvider", true},
               {"codeActionProvider", {{"codeActionKinds", {"quickfix"}}}}}}};
   }
 
