@@ -47,8 +47,12 @@ LineColumn SourceFile::position(std::uint32_t byte_offset) const {
   const auto after = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
   const auto line = static_cast<std::uint32_t>(after - line_starts_.begin());
   const auto begin = line_starts_[line - 1];
-  const auto column = 1 + code_points_before(offset) - code_points_before(begin);
-  return {line, column};
+  // Lines are short as a rule: then only the line is looked through, not the blocks around it.
+  const auto before = std::string_view(text_).substr(begin, offset - begin);
+  const auto column = before.size() <= kBlock
+                          ? static_cast<std::uint32_t>(count_code_points(before))
+                          : code_points_before(offset) - code_points_before(begin);
+  return {line, 1 + column};
 }
 
 std::uint32_t SourceFile::line_begin(std::uint32_t number) const {

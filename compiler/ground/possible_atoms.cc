@@ -231,14 +231,24 @@ std::span<const std::uint32_t> GroundTable::find(std::uint64_t mask,
 PossibleAtoms::PossibleAtoms(GroundModel& model)
     : model_(model), scheduled_(model.typed().symbols.size(), false) {}
 
+const std::vector<std::uint32_t>& PossibleAtoms::numbers_of(SymbolId symbol,
+                                                            const std::vector<GroundTermId>& terms,
+                                                            BySymbol& index) const {
+  if (index.numbers.empty() || index.terms != terms.size()) {
+    index.terms = terms.size();
+    index.numbers.assign(model_.typed().symbols.size(), {});
+    for (std::uint32_t i = 0; i < terms.size(); ++i)
+      index.numbers[model_.terms()[terms[i]].symbol.index()].push_back(i);
+  }
+  return index.numbers[symbol.index()];
+}
+
 GroundTable& PossibleAtoms::fluents(SymbolId symbol) {
   const auto& declared = model_.typed().symbols[symbol];
   const auto [entry, added] = fluents_.try_emplace(symbol, declared.arguments.size());
   if (added) {
-    for (std::uint32_t f = 0; f < model_.fluents().size(); ++f) {
-      const auto term = model_.fluents()[f];
-      if (model_.terms()[term].symbol != symbol || !model_.may_hold(f)) continue;
-      entry->second.add(model_.terms().arguments(term));
+    for (const auto f : numbers_of(symbol, model_.fluents(), fluent_numbers_)) {
+      if (model_.may_hold(f)) entry->second.add(model_.terms().arguments(model_.fluents()[f]));
     }
   }
   return entry->second;
@@ -261,10 +271,8 @@ GroundTable& PossibleAtoms::events(SymbolId symbol) {
     }
     return entry->second;
   }
-  for (std::uint32_t e = 0; e < model_.events().size(); ++e) {
-    const auto term = model_.events()[e];
-    if (model_.terms()[term].symbol != symbol || !model_.may_happen(e)) continue;
-    entry->second.add(model_.terms().arguments(term));
+  for (const auto e : numbers_of(symbol, model_.events(), event_numbers_)) {
+    if (model_.may_happen(e)) entry->second.add(model_.terms().arguments(model_.events()[e]));
   }
   return entry->second;
 }

@@ -101,7 +101,17 @@ class PossibleAtoms {
   bool may_be_true(SymbolId symbol, GroundTermId term) const;
 
  private:
+  /// Numbers of ground terms by their symbol, made anew when there are more terms.
+  struct BySymbol {
+    std::size_t terms = 0;
+    std::vector<std::vector<std::uint32_t>> numbers;
+  };
+  const std::vector<std::uint32_t>& numbers_of(SymbolId symbol,
+                                               const std::vector<GroundTermId>& terms,
+                                               BySymbol& index) const;
+
   GroundModel& model_;
+  BySymbol fluent_numbers_, event_numbers_;
   std::map<SymbolId, GroundTable> fluents_, predicates_;
   std::map<std::pair<SymbolId, bool>, GroundTable> events_;  // by symbol and whether timed
   std::map<SymbolId, std::unordered_set<std::uint32_t>> true_predicates_;

@@ -56,9 +56,17 @@ constexpr std::array<ForeignSpelling, 7> kWords = {{
 constexpr ForeignSpelling kComma = {",", kConjunction, "&", Kind::kOperator, Operator::kAnd};
 constexpr ForeignSpelling kPercent = {"%", kComment, ";", Kind::kComment};
 
+/// By byte: does a sign begin with it? The lexer asks at every token.
+constexpr auto kSignStarts = [] {
+  std::array<bool, 256> out{};
+  for (const auto& sign : kSigns) out[static_cast<unsigned char>(sign.text.front())] = true;
+  return out;
+}();
+
 }  // namespace
 
 const ForeignSpelling* foreign_sign(std::string_view text) {
+  if (text.empty() || !kSignStarts[static_cast<unsigned char>(text.front())]) return nullptr;
   const auto found = std::find_if(kSigns.begin(), kSigns.end(), [&](const ForeignSpelling& sign) {
     return text.starts_with(sign.text);
   });

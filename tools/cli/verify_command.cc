@@ -284,7 +284,7 @@ base::Result<std::optional<harness::Ledger>> ledger_of(const VerifyOptions& opti
   return std::optional(*std::move(ledger));
 }
 
-int verify(const VerifyOptions& options, Invocation& invocation) {
+int answer_verify(const VerifyOptions& options, Invocation& invocation) {
   const auto start = std::chrono::steady_clock::now();
   if (!options.model.until.empty() || names_artifact(options.model)) {
     invocation.sink().error_about(
@@ -409,7 +409,7 @@ Command verify_command() {
       .file({"yaml"});
   command.flag("--check", options->check,
                "Evaluate the model on the trace by independent means; exit 5 if it differs");
-  return command_of(std::move(command), options, verify);
+  return command_of(std::move(command), options, answer_verify);
 }
 
 }  // namespace parallax::tools

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 
 namespace parallax::tools::lsp {
 namespace {
@@ -89,7 +90,8 @@ std::string path_of_uri(std::string_view uri) {
       path += uri[i];
     }
   }
-  return path.find('\0') == std::string::npos ? path : std::string();
+  if (path.find('\0') != std::string::npos) return {};
+  return std::filesystem::path(path).lexically_normal().string();
 }
 
 std::string uri_of_path(std::string_view path) {

@@ -34,7 +34,8 @@ class Positions {
   std::vector<std::size_t> starts_;
 };
 
-/// The path of a `file:` address; empty for any other. Escapes (%20) are resolved.
+/// The path of a `file:` address; empty for any other. Escapes (%20), `.` and `..` are
+/// resolved.
 std::string path_of_uri(std::string_view uri);
 std::string uri_of_path(std::string_view path);
 

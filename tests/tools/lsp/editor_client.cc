@@ -40,7 +40,7 @@ EditorClient::EditorClient() {
 EditorClient::~EditorClient() {
   close_input();
   if (pid_ > 0) base::wait_for(pid_);
-  ::close(out_);
+  close_output();
 }
 
 void EditorClient::raw(const std::string& bytes) { base::write_all(in_, bytes); }
@@ -83,8 +83,13 @@ EditorClient::Json EditorClient::ask(const std::string& method, const Json& para
     if (message.is_discarded()) throw std::runtime_error("the server ended at " + method);
     if (message.value("id", Json()) == id)
       return message.contains("result") ? message["result"] : message["error"];
-    kept_.push_back(std::move(message));
+    keep(message);
   }
+}
+
+void EditorClient::keep(const Json& message) {
+  if (message.value("method", "") == "textDocument/publishDiagnostics")
+    published_[message["params"]["uri"].get<std::string>()] = message["params"];
 }
 
 void EditorClient::open(const std::string& path, const std::string& text, int version) {
@@ -102,20 +107,19 @@ void EditorClient::edit(const std::string& path, const std::string& text, std::s
 }
 
 EditorClient::Json EditorClient::diagnostics(const std::string& path, int version) {
-  const auto is_it = [&](const Json& message) {
-    return message.value("method", "") == "textDocument/publishDiagnostics" &&
-           message["params"]["uri"] == uri(path) &&
-           message["params"].value("version", -1) == version;
-  };
-  for (auto message = kept_.rbegin(); message != kept_.rend(); ++message) {
-    if (is_it(*message)) return (*message)["params"]["diagnostics"];
-  }
   while (true) {
-    auto message = read();
+    const auto found = published_.find(uri(path));
+    if (found != published_.end() && found->second.value("version", -1) == version)
+      return found->second["diagnostics"];
+    const auto message = read();
     if (message.is_discarded()) throw std::runtime_error("the server ended before its diagnostics");
-    kept_.push_back(message);
-    if (is_it(message)) return message["params"]["diagnostics"];
+    keep(message);
   }
+}
+
+EditorClient::Json EditorClient::last_diagnostics(const std::string& path) const {
+  const auto found = published_.find(uri(path));
+  return found == published_.end() ? Json() : found->second["diagnostics"];
 }
 
 void EditorClient::close_input() {
@@ -123,8 +127,13 @@ void EditorClient::close_input() {
   in_ = -1;
 }
 
+void EditorClient::close_output() {
+  if (out_ >= 0) ::close(out_);
+  out_ = -1;
+}
+
 int EditorClient::end() {
-  while (!read().is_discarded()) {
+  while (out_ >= 0 && !read().is_discarded()) {
   }
   const int code = base::wait_for(pid_);
   pid_ = -1;

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 namespace parallax::test {
 
@@ -19,7 +19,7 @@ class EditorClient {
   void raw(const std::string& bytes);
   void send(const Json& message);
   void note(const std::string& method, const Json& params);
-  /// The result, or the error, of a request; what comes meanwhile is kept.
+  /// The result, or the error, of a request; messages about files that come meanwhile are kept.
   Json ask(const std::string& method, const Json& params);
   /// Opens a file of the disk with this text.
   void open(const std::string& path, const std::string& text, int version = 1);
@@ -30,14 +30,21 @@ class EditorClient {
   Json diagnostics(const std::string& path, int version);
   /// The next message; discarded at the end of the output.
   Json read();
+  int process() const { return pid_; }
+  /// The messages about a file that were published last, of any version; null: never.
+  Json last_diagnostics(const std::string& path) const;
   void close_input();
+  /// Nobody reads what the server says any more.
+  void close_output();
   /// Waits for the server's end; its exit code.
   int end();
 
  private:
+  void keep(const Json& message);
+
   int in_ = -1, out_ = -1, pid_ = -1, id_ = 0;
   std::string buffer_;
-  std::vector<Json> kept_;
+  std::map<std::string, Json> published_;  // the parameters, by URI
 };
 
 std::string uri(const std::string& path);

@@ -2,55 +2,15 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <cstdlib>
-#include <random>
 #include <set>
 #include <string>
 
-#include "tests/tools/cli_fixture.h"
-#include "tests/tools/lsp/editor_client.h"
+#include "tests/tools/lsp/editor_desk.h"
 
 namespace parallax::test {
 namespace {
 
 using Json = EditorClient::Json;
-
-struct Desk : CliFixture {
-  Desk() { editor.ask("initialize", {{"capabilities", Json::object()}}); }
-  std::string path(const std::string& name) const {
-    return std::filesystem::canonical(folder() / name).string();
-  }
-  /// The answers of `check` about a file that stands on disk: code, line, column from 1.
-  std::multiset<std::string> checked(const std::string& root, const std::string& about) const {
-    const auto ran = parallax({"check", path(root), "--json"});
-    const auto document = Json::parse(ran.out);
-    std::multiset<std::string> out;
-    for (const auto& one : document.value("diagnostics", Json::array())) {
-      if (!one.contains("path") || one["path"] != path(about)) continue;
-      out.insert(one["code"].get<std::string>() + " " + one["line"].dump() + ":" +
-                 one["column"].dump());
-    }
-    return out;
-  }
-  static std::multiset<std::string> told(const Json& diagnostics) {
-    std::multiset<std::string> out;
-    for (const auto& one : diagnostics) {
-      const auto& start = one["range"]["start"];
-      out.insert(one["code"].get<std::string>() + " " +
-                 std::to_string(start["line"].get<int>() + 1) + ":" +
-                 std::to_string(start["character"].get<int>() + 1));
-    }
-    return out;
-  }
-  Json at(const std::string& name, const std::string& word) const {
-    const auto text = read(name);
-    return {{"textDocument", {{"uri", uri(path(name))}}},
-            {"position", place_in(text, text.find(word) + 1)}};
-  }
-
-  EditorClient editor;
-};
 
 TEST_CASE("a misspelled name is told with its fix while it is typed, and the fix mends it") {
   Desk desk;
@@ -178,95 +138,6 @@ TEST_CASE("a name that is taken, or is none, is refused and nothing changes") {
   }
 }
 
-TEST_CASE("after any edits the messages are those of check on the same text") {
-  const bool is_deep = std::getenv("PARALLAX_DEEP") != nullptr;
-  const int rounds = is_deep ? 2000 : 40;
-  Desk desk;
-  const auto path = desk.path("domain.e");
-  auto text = desk.read("domain.e");
-  const auto original = text;
-  desk.editor.open(path, text);
-  std::mt19937 draws(7);
-  int with_errors = 0;
-  for (int version = 2; version < 2 + rounds; ++version) {
-    const auto begin = draws() % (text.size() + 1);
-    const auto end = std::min(text.size(), begin + draws() % 12);
-    const char* pieces[] = {"",  " ",  ".", "\n",        "region", "BoxIn(",
-                            ")", "; ", "!", "Holding()", "->",     "x"};
-    const std::string fresh = pieces[draws() % 12];
-    desk.editor.edit(path, text, begin, end, fresh, version);
-    text.replace(begin, end - begin, fresh);
-    const auto told = Desk::told(desk.editor.diagnostics(path, version));
-    desk.write("domain.e", text);
-    std::multiset<std::string> expected;
-    for (const auto* root : {"edge.yaml", "scenario.yaml"}) {
-      for (const auto& one : desk.checked(root, "domain.e")) {
-        if (!expected.contains(one)) expected.insert(one);
-      }
-    }
-    CAPTURE(version);
-    CHECK(told == expected);
-    with_errors += told.empty() ? 0 : 1;
-    if (version % 7 == 0) {
-      desk.editor.edit(path, text, 0, text.size(), original, version);
-      text = original;
-    }
-  }
-  CHECK(with_errors > rounds / 2);
-}
-
-TEST_CASE("a storm of edits and questions at any place ends in order") {
-  const bool is_deep = std::getenv("PARALLAX_DEEP") != nullptr;
-  const int rounds = is_deep ? 20'000 : 1'000;
-  Desk desk;
-  const auto path = desk.path("domain.e");
-  auto text = desk.read("domain.e");
-  desk.editor.open(path, text);
-  std::mt19937 draws(11);
-  const char* questions[] = {"textDocument/hover",
-                             "textDocument/definition",
-                             "textDocument/references",
-                             "textDocument/documentHighlight",
-                             "textDocument/prepareRename",
-                             "textDocument/completion",
-                             "textDocument/documentSymbol",
-                             "textDocument/formatting",
-                             "no/such"};
-  for (int version = 2; version < 2 + rounds; ++version) {
-    const auto begin = draws() % (text.size() + 1);
-    const auto end = std::min(text.size(), begin + draws() % 30);
-    std::string fresh;
-    for (auto left = draws() % 8; left > 0; --left)
-      fresh += static_cast<char>(draws() % 20 == 0 ? '\n' : ' ' + draws() % 95);
-    desk.editor.edit(path, text, begin, end, fresh, version);
-    text.replace(begin, end - begin, fresh);
-    if (text.size() > 6000 || text.size() < 200) {
-      const auto original = desk.read("domain.e");
-      desk.editor.edit(path, text, 0, text.size(), original, version);
-      text = original;
-    }
-    if (draws() % 4 != 0) continue;
-    const Json position = {{"line", draws() % 60}, {"character", draws() % 90}};
-    const Json params = {{"textDocument", {{"uri", uri(path)}}},
-                         {"position", position},
-                         {"options", Json::object()}};
-    const auto answer = desk.editor.ask(questions[draws() % 9], params);
-    CHECK((answer.is_null() || answer.is_structured()));
-  }
-  const auto told = Desk::told(desk.editor.diagnostics(path, 1 + rounds));
-  desk.write("domain.e", text);
-  std::multiset<std::string> expected;
-  for (const auto* root : {"edge.yaml", "scenario.yaml"}) {
-    for (const auto& one : desk.checked(root, "domain.e")) {
-      if (!expected.contains(one)) expected.insert(one);
-    }
-  }
-  CHECK(told == expected);
-  desk.editor.ask("shutdown", nullptr);
-  desk.editor.note("exit", nullptr);
-  CHECK(desk.editor.end() == 0);
-}
-
 TEST_CASE("places count UTF-16 units, or bytes where the editor offers them") {
   for (const bool bytes : {false, true}) {
     CliFixture files;
@@ -283,54 +154,6 @@ TEST_CASE("places count UTF-16 units, or bytes where the editor offers them") {
       const auto line = std::string("[time] /* \xF0\x9F\xA4\x96 */ HoldsAt(");
       CHECK(one["range"]["start"]["character"] == (bytes ? line.size() : line.size() - 2));
     }
-  }
-}
-
-TEST_CASE("what is no message, or comes at the wrong time, is refused or ends the server cleanly") {
-  SUBCASE("before initialize, after shutdown, unknown and malformed requests") {
-    EditorClient editor;
-    CHECK(editor.ask("textDocument/hover", Json::object())["code"] == -32002);
-    editor.raw("Content-Length: 7\r\n\r\nnothing");
-    CHECK(editor.read()["error"]["code"] == -32700);
-    editor.ask("initialize", {{"capabilities", Json::array()}});
-    CHECK(editor.ask("nothing/known", Json::object())["code"] == -32601);
-    CHECK(editor.ask("textDocument/hover", {{"textDocument", 3}})["code"] == -32602);
-    editor.note("textDocument/didChange", {{"contentChanges", "no"}});
-    editor.note("nothing/known", nullptr);
-    editor.ask("shutdown", nullptr);
-    CHECK(editor.ask("textDocument/hover", Json::object())["code"] == -32600);
-    editor.note("exit", nullptr);
-    CHECK(editor.end() == 0);
-  }
-  SUBCASE("exit without shutdown") {
-    EditorClient editor;
-    editor.note("exit", nullptr);
-    CHECK(editor.end() == 1);
-  }
-  SUBCASE("the client goes away in the middle of a message") {
-    EditorClient editor;
-    editor.raw("Content-Length: 500\r\n\r\n{\"jsonrpc\":");
-    editor.close_input();
-    CHECK(editor.end() == 1);
-  }
-  SUBCASE("the client goes away while a text is checked") {
-    Desk desk;
-    desk.editor.open(desk.path("domain.e"), desk.read("domain.e"));
-    desk.editor.close_input();
-    CHECK(desk.editor.end() == 1);
-  }
-  SUBCASE("a header without end") {
-    EditorClient editor;
-    editor.raw(std::string(100'000, 'x'));
-    CHECK(editor.end() == 1);
-  }
-  SUBCASE("a message of 100 MB is dropped, and the next one is answered") {
-    EditorClient editor;
-    const std::size_t size = 100'000'000;
-    editor.raw("Content-Length: " + std::to_string(size) + "\r\n\r\n");
-    const std::string piece(1'000'000, ' ');
-    for (std::size_t sent = 0; sent < size; sent += piece.size()) editor.raw(piece);
-    CHECK(editor.ask("initialize", Json::object()).contains("capabilities"));
   }
 }
 
