@@ -1,4 +1,4 @@
-# Makes the tables of docs/guide/rare.md of what parallax_rare_table prints: a line for each method, world
+# Makes the tables of docs/internals/performance.md of what parallax_rare_table prints: a line for each method, world
 # and number of dimensions, and for each probability how often the interval holds, the median ratio
 # of its ends, and the share of estimates that say that they are not resolved.
 function trim(text) { gsub(/^ +| +$/, "", text); return text }
