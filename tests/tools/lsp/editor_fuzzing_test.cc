@@ -94,6 +94,17 @@ class Session {
     CHECK((answer.is_null() || answer.is_structured()));
   }
 
+  /// Most edits break a file early. So that later errors and right texts are seen as well, two of
+  /// three comparisons begin with texts that are whole again, and one edit or one edited file.
+  void mend() {
+    const auto how = draws_() % 3;
+    const auto kept = draws_() % files_.size();
+    for (std::size_t i = 0; how != 0 && i < files_.size(); ++i) {
+      if (how == 1 || i != kept) replace(files_[i], 0, files_[i].text.size(), files_[i].original);
+    }
+    if (how == 1) edit();
+  }
+
   /// Compares what was told about all files with what `check` says. Returns the number of messages.
   std::size_t compare() {
     // The file that changed last has a version that nothing was told about before.
@@ -163,10 +174,12 @@ TEST_CASE("after any edits the messages are those of check on the same texts") {
     session.edit();
     if (i % 4 == 0) session.ask();
     if (i % between != 0) continue;
+    session.mend();
     with_messages += session.compare() > 0 ? 1 : 0;
     ++compared;
   }
   CHECK(with_messages > compared / 2);
+  CHECK(with_messages < compared);
   MESSAGE(edits << " edits, compared at " << compared << ", with messages at " << with_messages);
   CHECK(session.end() == 0);
 }
