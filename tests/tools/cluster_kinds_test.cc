@@ -174,6 +174,15 @@ TEST_CASE("worlds that modules read or step are simulated elsewhere") {
   }
 }
 
+TEST_CASE("a file of hosts leaves no trace in the files of a run") {
+  const Cluster here, there;
+  there.write("hosts", "2 env\n");
+  REQUIRE(here.parallax(kRun).code == 0);
+  const auto found = there.parallax(joined(kRun, {"--hosts", "hosts"}));
+  CHECK_MESSAGE(found.code == 0, found.err);
+  CHECK(differing_files(here, there, "out") == "");
+}
+
 TEST_CASE("a campaign with many workers that is killed outright loses nothing that was finished") {
   const Cluster cli;
   cli.coin(0.0, "seeded");

@@ -2,6 +2,7 @@
 // started, and what of the campaign was lost. The table is printed at the end, and left in
 // cluster_faults.md of the build.
 
+#include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -55,9 +56,10 @@ const CliFixture& here() {
 /// Counts lost simulations, and compares the files with those of one machine.
 Row row_of(const CliFixture& there, std::string fault, std::string how, std::string told) {
   Row row{std::move(fault), std::move(how), std::move(told), 0, ""};
+  row.differing = differing_files(here(), there, "run");
+  std::replace(row.differing.begin(), row.differing.end(), '\n', ' ');
   const auto report = nlohmann::json::parse(there.read("run/report.json"));
   for (const auto& trace : report.at("traces")) row.lost += trace.at("lost").get<std::int64_t>();
-  row.differing = differing_files(here(), there, "run");
   CHECK(row.lost == 0);
   CHECK(row.differing == "");
   table().add(row);
@@ -66,17 +68,18 @@ Row row_of(const CliFixture& there, std::string fault, std::string how, std::str
 
 /// The first line of standard error with these words, without what differs from run to run.
 std::string line_with(const std::string& text, const std::string& words) {
+  if (words.empty()) return "nothing";
   for (auto line : lines(text)) {
     const auto at = line.find(words);
     if (at == std::string::npos) continue;
     for (auto& letter : line) {
-      if (letter == '|') letter = '/';
+      if (letter == '|' || letter == '`') letter = '\'';
     }
     return "`" + line.substr(at, 70) + "`";
   }
   CAPTURE(text);
-  CHECK_MESSAGE(words.empty(), words);
-  return "nothing";
+  CHECK_MESSAGE(false, words);
+  return "other words";
 }
 
 /// Injects a fault once some simulations are done.

@@ -277,6 +277,8 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   auto options = given;
   const auto workers = fleet_of(options.launcher, options.jobs, invocation);
   if (!workers) return 0;
+  // Where workers are is no part of what is run.
+  const auto of_places = std::ssize(invocation.files().inputs());
   std::optional<Execution> execution;
   for (const auto one : {Execution::kOpenLoop, Execution::kClosedLoop}) {
     if (options.execution == to_string(one)) execution = one;
@@ -296,7 +298,9 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   }
   const auto& model = loaded->compilation.model;
   // Before it is run, which may take long: the files may change meanwhile.
-  auto inputs = packed_inputs(options.scenario, loaded->sources_hash, invocation.files().inputs());
+  const auto& read = invocation.files().inputs();
+  auto inputs = packed_inputs(options.scenario, loaded->sources_hash,
+                              std::vector<std::string>(read.begin() + of_places, read.end()));
   auto campaign = campaign_options(options, *loaded, invocation);
   if (options.out.empty() && !base::check_unnamed_output(campaign.run_dir, ".", "--out", sink)) {
     return 0;
