@@ -66,9 +66,9 @@ TEST_CASE("tasks: nothing returns out of one, and the message names the repair")
 
 TEST_CASE("tasks: a top-level function does not run in another") {
   const std::string inner = "(def-top-level-cram-function f () (sig))";
-  const auto nested = with_prelude(inner + "(defun g () (f))(g)");
+  const auto nested = unroll(prelude() + inner + "(defun g () (go1) (f))(g)");
   CHECK(nested.codes() == Strings{"W-ERROR"});
-  CHECK(nested.events("+") == Strings{});
+  CHECK(nested.events("+") == Strings{"Go(r1)", "FAILED(simple-error)"});
   CHECK(with_prelude(inner + "(f)").events("+") == Strings{"Signal()", "DONE"});
   CHECK(with_prelude(inner).events("+") == Strings{"Signal()", "DONE"});
 }
