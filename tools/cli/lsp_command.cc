@@ -1,5 +1,7 @@
 #include <unistd.h>
 
+#include <csignal>
+
 #include "tools/cli/command.h"
 #include "tools/lsp/server.h"
 
@@ -17,6 +19,9 @@ Command lsp_command() {
       "of a scenario is started. docs/guide/models.md says how editors are told about it.\n"
       "Exit codes: 0 the editor ended it, 1 the editor went away.");
   return {std::move(command), [](Invocation& invocation) {
+            // It has nothing to finish, and may be waiting for its client.
+            std::signal(SIGINT, SIG_DFL);
+            std::signal(SIGTERM, SIG_DFL);
             const int code = lsp::serve_editor(STDIN_FILENO, STDOUT_FILENO);
             invocation.answered();
             return code;

@@ -1,6 +1,7 @@
 // Clients that break the protocol, go away, or open files that no editor should.
 
 #include <doctest/doctest.h>
+#include <signal.h>
 
 #include <cstdint>
 #include <string>
@@ -172,6 +173,16 @@ TEST_CASE("what is no message, or comes at the wrong time, is refused or ends th
     const std::string piece(1'000'000, ' ');
     for (std::size_t sent = 0; sent < size; sent += piece.size()) editor.raw(piece);
     CHECK(editor.ask("initialize", Json::object()).contains("capabilities"));
+  }
+}
+
+TEST_CASE("a server that waits for its client ends at the first signal") {
+  for (const int signal : {SIGTERM, SIGINT}) {
+    Desk desk;
+    desk.open("domain.e");
+    CHECK(desk.editor.diagnostics(desk.path("domain.e"), 1).is_array());
+    REQUIRE(::kill(desk.editor.process(), signal) == 0);
+    CHECK(desk.editor.end() == 128 + signal);
   }
 }
 
