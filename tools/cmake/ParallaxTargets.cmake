@@ -41,7 +41,7 @@ function(parallax_batches target size_limit)
   endforeach()
 endfunction()
 
-# Cold rooms, and programs where PARALLAX_COLD is set, are compiled with -O1: they read and write text, and wait
+# Cold rooms, and programs where PARALLAX_COLD is set, are compiled with -O1: they read and write text, call Eigen, and wait
 # for solvers and simulators. It saves a fifth of their compile time.
 function(parallax_optimize target)
   if(PARALLAX_COLD)
