@@ -73,7 +73,7 @@ struct HeaderDifference {
   std::string field;  // "seed", "options.criterion.epsilon"
   std::string recorded, now;
 };
-/// What is not now as it was when the simulation was made, as far as is known.
+/// Differences between the machine that made a simulation and this one, as far as they are known.
 struct MachineChange {
   bool arithmetic = false;  // the machine calculates otherwise
   bool build = false;       // another build of the program or of a library

@@ -77,7 +77,7 @@ std::string simulator_change(const JournalHeader& header, const SimulatorInfo& s
 /// bit for bit. A simulator is made only if nothing that is on record forbids the repetition, above
 /// all a changed scenario.
 /// `moved`: the repetition is recorded there, where it came to its end, whether it differs or not.
-/// What has changed of the machine is for the caller to say (machine_change).
+/// The caller asks whether the machine has changed (machine_change).
 ReplayResult replay_sample(const RecordedRun& run, const std::string& scenario_hash,
                            const SimulatorFactory& make_simulator,
                            std::optional<Recording>* moved = nullptr);

@@ -26,7 +26,8 @@ namespace parallax::harness {
 namespace {
 
 constexpr auto kStopSlice = std::chrono::milliseconds(50);  // how late the stop flag may be seen
-constexpr std::int64_t kBusyWatchers = 64;  // so many idle workers look for late simulations
+// Idle threads look for late simulations; beyond so many workers each looks less often.
+constexpr std::int64_t kBusyWatchers = 64;
 
 // A simulation is also given to a second worker once it has taken this many times the average. A
 // run is rarely that long by itself, and the second worker had nothing to do.

@@ -1,6 +1,5 @@
-// Faults on a cluster, each injected into a campaign on the Slurm that tools/cluster-test has
-// started, and what of the campaign was lost. The table is printed at the end, and left in
-// cluster_faults.md of the build.
+// Injects faults into campaigns on the Slurm that tools/cluster-test has started, one fault each,
+// and counts what was lost. A table is printed at the end; the build keeps it as cluster_faults.md.
 
 #include <algorithm>
 #include <cstdio>

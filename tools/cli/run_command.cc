@@ -277,7 +277,7 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   auto options = given;
   const auto workers = fleet_of(options.launcher, options.jobs, invocation);
   if (!workers) return 0;
-  // Where workers are is no part of what is run.
+  // The file of hosts, which is read first, is not among the run's texts.
   const auto of_places = std::ssize(invocation.files().inputs());
   std::optional<Execution> execution;
   for (const auto one : {Execution::kOpenLoop, Execution::kClosedLoop}) {

@@ -1,5 +1,5 @@
-// Where declared names stand. Names are taken from declarations by the compiler's own parser, which
-// goes on after errors; their places are words of models, tables and scenarios outside of comments.
+// Finds the places of declared names. The compiler's own parser, which goes on after errors, gives
+// the names; their places are words of models, tables and scenarios outside of comments.
 // Names of plans come from tools/lsp/plan_names. Linear in the texts.
 
 #include "tools/lsp/name_map.h"

@@ -55,7 +55,7 @@ class OutlineReader {
     return nodes_.size() - 1;
   }
 
-  /// Where the key that begins here ends: at a colon that a blank follows. None: no key.
+  /// The end of the key that begins here, a colon that a blank follows. None: there is no key.
   std::optional<std::size_t> key_end(bool in_brackets) const {
     if (peek() == '"' || peek() == '\'') {
       const auto close = text_.find(peek(), at_ + 1);

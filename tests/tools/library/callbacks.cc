@@ -27,7 +27,7 @@ struct Own : std::runtime_error {
 
 enum class At { kNowhere, kInfo, kReset, kAct, kObserve, kActNoException };
 
-/// Where the n-th simulation is to throw.
+/// The callback that throws, and in which simulation.
 struct Plan {
   At at = At::kNowhere;
   int simulation = 3;
