@@ -279,7 +279,7 @@ class Exporter {
         options_(options),
         terms_(model, names, sink),
         formulas_(model, names, terms_, rules_),
-        completion_(model, names, terms_, formulas_, rules_),
+        completion_(model, names, terms_, formulas_, rules_, sink),
         open_(model, names, options) {}
 
   std::string write() {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "compiler/base/codes/grounding.h"
+
 namespace parallax::compiler {
 namespace {
 
@@ -15,6 +17,17 @@ std::string tuple(const std::vector<std::string>& terms) {
   return text + ")";
 }
 
+bool mentions(const TypedModel& model, TypedFormulaId root, SymbolId predicate) {
+  std::vector<TypedFormulaId> todo = {root};
+  while (!todo.empty()) {
+    const auto& formula = model.formulas[todo.back()];
+    todo.pop_back();
+    if (formula.kind == FormulaKind::kAtom && formula.predicate == predicate) return true;
+    todo.insert(todo.end(), formula.children.begin(), formula.children.end());
+  }
+  return false;
+}
+
 bool is_occurrence(const AspLiteral& literal, SymbolId predicate) {
   return literal.predicate == predicate;
 }
@@ -22,11 +35,38 @@ bool is_occurrence(const AspLiteral& literal, SymbolId predicate) {
 }  // namespace
 
 CompletionRules::CompletionRules(const TypedModel& model, AspNames& names, TermWriter& terms,
-                                 FormulaWriter& formulas, std::string& rules)
-    : model_(model), terms_(terms), names_(names), formulas_(formulas), rules_(rules) {
+                                 FormulaWriter& formulas, std::string& rules,
+                                 base::DiagnosticSink& sink)
+    : model_(model), terms_(terms), names_(names), formulas_(formulas), rules_(rules), sink_(sink) {
   for (const auto& completion : model.completions) {
     reasons_.push_back(names.fresh("reason_" + names.symbol(completion.predicate)));
+    for (const auto& effect : model.effects) {
+      effects_hide_completed_ =
+          effects_hide_completed_ || mentions(model, effect.condition, completion.predicate);
+    }
   }
+}
+
+/// Atoms in auxiliary rules, and in the conditions of effects, cannot be given their reasons.
+bool CompletionRules::is_refused(const Axiom& axiom, const AspFormula& false_body) {
+  if (!model_.options.founded) return false;
+  const bool effects = axiom.mentions_effects && effects_hide_completed_;
+  if (false_body.hidden.empty() && !effects) return false;
+  sink_.error(codes::kAspNotFounded, axiom.source,
+              effects ? std::string("a completed predicate in the condition of an effect")
+                      : "`" + model_.symbols[*false_body.hidden.begin()].name + "`");
+  return true;
+}
+
+/// The literal, and in a founded model the reasons of the completed atom that it asks for.
+AspBody CompletionRules::with_reason(const AspLiteral& literal) const {
+  AspBody body = {literal};
+  if (!model_.options.founded || !literal.predicate || !literal.positive) return body;
+  for (std::size_t c = 0; c < model_.completions.size(); ++c) {
+    if (model_.completions[c].predicate != *literal.predicate) continue;
+    body.push_back(plain_literal(applied(reasons_[c], literal.arguments)));
+  }
+  return body;
 }
 
 void CompletionRules::note(const Axiom& axiom, const std::vector<VariableId>& variables,
@@ -34,9 +74,11 @@ void CompletionRules::note(const Axiom& axiom, const std::vector<VariableId>& va
   // A definition over effects (Clipped, ECCausal) gives no reason for the predicates that define
   // it.
   if (axiom.mentions_effects && model_.formulas[body].kind == FormulaKind::kIff) return;
-  for (std::size_t c = 0; c < model_.completions.size(); ++c) {
+  bool refused = false;
+  for (std::size_t c = 0; c < model_.completions.size() && !refused; ++c) {
     const auto& completion = model_.completions[c];
     if (completion.label && *completion.label != axiom.label) continue;
+    refused = is_refused(axiom, false_body);
     auto instance = terms_.domains(variables);
     append(instance, false_body.exists);
     bool hidden = false_body.hidden.contains(completion.predicate);
@@ -76,7 +118,7 @@ void CompletionRules::open_reasons(std::size_t completion, const AspBody& instan
           ways.push_back(ways[w]);
           ways.back().push_back(plain_literal(same));
         }
-        ways[w].push_back(body[k]);
+        append(ways[w], with_reason(body[k]));
         if (occurs && body[k].positive) ways[w].push_back(plain_literal(same));
       }
     }
@@ -112,7 +154,7 @@ void CompletionRules::hidden_reasons(std::size_t completion, const AspBody& inst
   for (const auto& alternative : written.alternatives) {
     auto all = point.domain;
     append(all, instance);
-    append(all, alternative);
+    for (const auto& literal : alternative) append(all, with_reason(literal));
     rules_ += rule_text(applied(reasons_[completion], point.arguments), all);
   }
 }

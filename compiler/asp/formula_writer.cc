@@ -100,6 +100,10 @@ AspFormula FormulaWriter::write(TypedFormulaId root, bool wanted, const AspPoint
       continue;
     }
     const auto kind = frame.formula->kind;
+    if (kind == FormulaKind::kAggregate) {
+      enter(frame.formula->children[next], true, false);
+      continue;
+    }
     const bool both = kind == FormulaKind::kIff;
     const bool turned = kind == FormulaKind::kNot || (kind == FormulaKind::kImplies && next == 0);
     const bool want_true = turned ? frame.want_false : frame.want_true;
@@ -109,12 +113,29 @@ AspFormula FormulaWriter::write(TypedFormulaId root, bool wanted, const AspPoint
   return {std::move(done->exists), std::move(done->when(wanted)), std::move(hidden_)};
 }
 
-void FormulaWriter::inherit(Part& whole, Part& part) const {
-  for (const auto variable : part.free) {
-    if (std::find(whole.free.begin(), whole.free.end(), variable) == whole.free.end()) {
-      whole.free.push_back(variable);
+void FormulaWriter::add_free(const std::vector<VariableId>& variables, Part& part) {
+  for (const auto variable : variables) {
+    if (std::find(part.free.begin(), part.free.end(), variable) == part.free.end()) {
+      part.free.push_back(variable);
     }
   }
+}
+
+/// In the order in which they stand.
+std::vector<VariableId> FormulaWriter::variables_of(TermId root) const {
+  std::vector<VariableId> found;
+  std::vector<TermId> visit = {root};
+  while (!visit.empty()) {
+    const auto& term = model_.terms[visit.back()];
+    visit.pop_back();
+    visit.insert(visit.end(), term.arguments.rbegin(), term.arguments.rend());
+    if (term.kind == TermKind::kVariable) found.push_back(term.variable);
+  }
+  return found;
+}
+
+void FormulaWriter::inherit(Part& whole, Part& part) const {
+  add_free(part.free, whole);
   whole.completed.insert(part.completed.begin(), part.completed.end());
   move_behind(whole.exists, std::move(part.exists));
 }
@@ -122,6 +143,7 @@ void FormulaWriter::inherit(Part& whole, Part& part) const {
 FormulaWriter::Part FormulaWriter::combine(Frame& frame) {
   const auto kind = frame.formula->kind;
   if (kind == FormulaKind::kForall || kind == FormulaKind::kExists) return quantified(frame);
+  if (kind == FormulaKind::kAggregate) return aggregate(frame);
   Part whole;
   auto& parts = frame.parts;
   if (kind == FormulaKind::kNot || kind == FormulaKind::kImplies) {
@@ -240,14 +262,68 @@ FormulaWriter::Part FormulaWriter::quantified(Frame& frame) {
     whole.when(exists) = {AspBody{decided}};
     whole.when(!exists) = {AspBody{open}};
   }
-  const bool any_empty = std::any_of(variables.begin(), variables.end(), [&](VariableId id) {
-    return terms_.is_empty(model_.variables[id].sort);
-  });
-  if (!body.exists.empty() && !any_empty) {
-    Part fixed;  // existence does not depend on the point
-    fixed.free = whole.free;
-    whole.exists.push_back(auxiliary("exists", fixed, domain, constant(true)));
+  if (!body.exists.empty()) note_existence(frame, domain, whole);
+  return whole;
+}
+
+/// The whole exists where `domain` has an instance, or there can be none at all.
+void FormulaWriter::note_existence(const Frame& frame, const AspBody& domain, Part& whole) {
+  const auto& variables = frame.formula->variables;
+  if (std::any_of(variables.begin(), variables.end(),
+                  [&](VariableId id) { return terms_.is_empty(model_.variables[id].sort); })) {
+    return;
   }
+  Part fixed;  // existence does not depend on the point
+  fixed.free = whole.free;
+  whole.exists.push_back(auxiliary("exists", fixed, domain, constant(true)));
+}
+
+/// `#count{X : counted_N(free variables,X)} >= K`; a sum has its weight in front of X.
+FormulaWriter::Part FormulaWriter::aggregate(Frame& frame) {
+  const auto& formula = *frame.formula;
+  auto& body = frame.parts[0];
+  Part instance;  // with the variables of the aggregate
+  instance.completed = body.completed;
+  add_free(body.free, instance);
+  const auto number = terms_.term(formula.terms[0]);
+  std::optional<AspTerm> weight;
+  if (formula.terms.size() == 2) {
+    weight = terms_.term(formula.terms[1]);
+    add_free(variables_of(formula.terms[1]), instance);
+    append(body.exists, weight->needs);
+  }
+  Part whole;
+  whole.completed = body.completed;
+  std::string tuple = weight ? weight->text : std::string();
+  for (const auto variable : formula.variables) {
+    tuple += (tuple.empty() ? "" : ",") + terms_.variable(variable);
+  }
+  for (const auto variable : instance.free) {
+    const auto& own = formula.variables;
+    if (std::find(own.begin(), own.end(), variable) == own.end()) whole.free.push_back(variable);
+  }
+  add_free(formula.variables, instance);
+  auto domain = terms_.domains(whole.free);
+  append(domain, terms_.domains(formula.variables));
+  append(domain, body.exists);
+  std::string elements;
+  if (!body.when_true.empty()) {
+    elements = tuple + " : " + auxiliary("counted", instance, domain, body.when_true).text;
+    if (weight) {
+      for (const auto& literal : weight->lookups) elements += ", " + literal.text;
+    }
+  }
+  if (!body.exists.empty()) note_existence(frame, domain, whole);
+  append(whole.exists, number.needs);
+  add_free(variables_of(formula.terms[0]), whole);
+  for (const bool value : {false, true}) {
+    AspBody all = number.lookups;
+    all.push_back(plain_literal((weight ? "#sum{ " : "#count{ ") + elements + " }" +
+                                comparison_sign(formula.compare, value) + number.text));
+    whole.when(value) = {std::move(all)};
+  }
+  if (!frame.want_true) whole.when_true.clear();
+  if (!frame.want_false) whole.when_false.clear();
   return whole;
 }
 
@@ -264,11 +340,7 @@ AspLiteral FormulaWriter::all_instances(const Part& whole, Part& body, bool valu
   Part instance;  // with the quantifier's variables
   instance.free = whole.free;
   instance.completed = whole.completed;
-  for (const auto variable : variables) {
-    if (std::find(instance.free.begin(), instance.free.end(), variable) == instance.free.end()) {
-      instance.free.push_back(variable);
-    }
-  }
+  add_free(variables, instance);
   Part nothing;
   nothing.free = instance.free;
   const auto exists = auxiliary("instance", nothing, domain, constant(true));
@@ -286,17 +358,7 @@ FormulaWriter::Part FormulaWriter::leaf(const TypedFormula& formula, bool want_t
     part.when_false = constant(!value);
   } else {
     part = formula.kind == FormulaKind::kAtom ? atom(formula) : compare(formula);
-    std::vector<TermId> visit = formula.terms;
-    std::reverse(visit.begin(), visit.end());
-    while (!visit.empty()) {
-      const auto& term = model_.terms[visit.back()];
-      visit.pop_back();
-      visit.insert(visit.end(), term.arguments.rbegin(), term.arguments.rend());
-      if (term.kind != TermKind::kVariable) continue;
-      if (std::find(part.free.begin(), part.free.end(), term.variable) == part.free.end()) {
-        part.free.push_back(term.variable);
-      }
-    }
+    for (const auto term : formula.terms) add_free(variables_of(term), part);
   }
   if (!want_true) part.when_true.clear();
   if (!want_false) part.when_false.clear();

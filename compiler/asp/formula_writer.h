@@ -59,6 +59,8 @@ class FormulaWriter {
   AspBody needs_of_atom(const TypedFormula& formula, std::vector<AspTerm>& arguments);
   Part combine(Frame& frame);
   Part quantified(Frame& frame);
+  Part aggregate(Frame& frame);
+  void note_existence(const Frame& frame, const AspBody& domain, Part& whole);
   bool mentions_effect(const TypedFormula& formula) const;
   AspLiteral all_instances(const Part& whole, Part& body, bool value,
                            const std::vector<VariableId>& variables, const AspBody& domain);
@@ -68,6 +70,8 @@ class FormulaWriter {
   std::optional<AspBody> single(Part& part, bool value);
   AspLiteral auxiliary(const char* kind, const Part& part, const AspBody& domain,
                        const AspAlternatives& alternatives);
+  static void add_free(const std::vector<VariableId>& variables, Part& part);
+  std::vector<VariableId> variables_of(TermId root) const;
   void inherit(Part& whole, Part& part) const;
 
   const TypedModel& model_;

@@ -22,15 +22,14 @@ namespace {
 
 constexpr int kPollMs = 20;  // how late `signal_when` may be asked
 
-/// Data that the child needs to become the program. Prepared before the fork, since only
-/// async-signal-safe calls may follow it.
+/// Data that the child needs to become the program. Prepared before the child is there, which may
+/// make only async-signal-safe calls.
 struct ChildPlan {
   std::vector<char*> arguments;
   const char* program;
   const SpawnOptions& options;
   int report;
   pid_t parent;
-  sigset_t signals;  // blocked in the child when the program starts
 };
 
 /// Every other descriptor is closed by the exec.
@@ -57,8 +56,9 @@ bool redirect(int from, int to) {
   return ::dup2(from, to) >= 0;
 }
 
-/// In the child. Comes back, with errno, only when the program could not be started.
-void become(const ChildPlan& plan) {
+/// In the child, which blocks `signals` when the program starts. Comes back, with errno, only when
+/// the program could not be started.
+void become(const ChildPlan& plan, const sigset_t& signals) {
   const auto& options = plan.options;
   if (options.own_session || options.ends_with_us) {
     // No spawn attribute offers this. The parent may have gone before it was asked for.
@@ -77,20 +77,23 @@ void become(const ChildPlan& plan) {
   if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) return;
   close_on_exec_from(STDERR_FILENO + 1);
   default_handlers(options.own_session);
-  ::sigprocmask(SIG_SETMASK, &plan.signals, nullptr);
+  ::sigprocmask(SIG_SETMASK, &signals, nullptr);
   ::execvp(plan.program, plan.arguments.data());  // glibc's does not allocate
 }
 
 /// The child's number, or -1. Signals wait meanwhile.
-pid_t fork_child(ChildPlan& plan) {
+///
+/// The child borrows our memory until it is the program (`vfork`), so it must not change any of
+/// it. A copy of a process with a thousand threads took longer than the start of most programs.
+pid_t fork_child(const ChildPlan& plan) {
   sigset_t all, before;
   sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
-  plan.signals = before;
-  if (plan.options.own_session) sigemptyset(&plan.signals);
-  const pid_t pid = ::fork();
+  auto signals = before;
+  if (plan.options.own_session) sigemptyset(&signals);
+  const pid_t pid = ::vfork();
   if (pid == 0) {
-    become(plan);
+    become(plan, signals);
     const int why = errno;
     const auto written = ::write(plan.report, &why, sizeof why);
     ::_exit(written == sizeof why ? EXIT_FAILURE : EXIT_FAILURE + 1);
@@ -125,7 +128,7 @@ void drain(Descriptor& from, std::string& text, std::size_t limit) {
 Spawned spawn(const std::vector<std::string>& command, const SpawnOptions& options) {
   Pipe report;
   if (!report.valid()) return {-1, errno};
-  ChildPlan plan{{}, command.front().c_str(), options, report.write.get(), ::getpid(), {}};
+  ChildPlan plan{{}, command.front().c_str(), options, report.write.get(), ::getpid()};
   if (!options.program.empty()) plan.program = options.program.c_str();
   for (const auto& word : command) plan.arguments.push_back(const_cast<char*>(word.c_str()));
   plan.arguments.push_back(nullptr);

@@ -50,8 +50,6 @@ bool is_commutative(const Canonical& node) {
          node.op == Operator::kEqual || node.op == Operator::kNotEqual;
 }
 
-bool is_quantifier(NodeKind kind) { return kind == NodeKind::kForall || kind == NodeKind::kExists; }
-
 /// Builds the tree, parents before children, and says which variable each name is.
 class TreeBuilder {
  public:
@@ -86,7 +84,7 @@ class TreeBuilder {
   void enter(NodeId id, std::size_t parent) {
     const auto& node = ast_[id];
     const auto index = place(node, parent);
-    if (is_quantifier(node.kind)) return enter_quantifier(node, index);
+    if (node.bound_count() > 0) return enter_scope(node, index);
     if (node.kind == NodeKind::kName) return resolve(nodes[index]);
     for (std::uint32_t i = node.child_count; i > 0; --i) push(ast_.child(node, i - 1), index);
   }
@@ -112,8 +110,8 @@ class TreeBuilder {
     return nodes.size() - 1;
   }
 
-  void enter_quantifier(const Node& node, std::size_t index) {
-    for (std::uint32_t i = 0; i + 1 < node.child_count; ++i) {
+  void enter_scope(const Node& node, std::size_t index) {
+    for (std::uint32_t i = 0; i < node.bound_count(); ++i) {
       const auto variable = ast_.child(node, i);
       const auto name = ast_.name(ast_[variable]);
       nodes[index].bound.push_back(sorts.size());
@@ -121,7 +119,7 @@ class TreeBuilder {
       sorts.push_back(sort_of(name));
       tasks_.push_back({variable, kNone, true});
     }
-    push(ast_.child(node, node.child_count - 1), index);
+    for (auto i = node.child_count; i-- > node.bound_count();) push(ast_.child(node, i), index);
   }
 
   void resolve(Canonical& node) const {
@@ -143,7 +141,9 @@ int level(Operator op) {
 
 /// Would `child` be read otherwise below `parent` if it stood without brackets?
 bool needs_brackets(const Canonical& parent, const Canonical& child) {
-  if (is_quantifier(parent.kind) || parent.kind == NodeKind::kApply) return false;
+  if (is_quantifier(parent.kind) || is_aggregate(parent.kind) || parent.kind == NodeKind::kApply) {
+    return false;
+  }
   if (is_quantifier(child.kind)) return true;
   if (child.kind == NodeKind::kUnary) {
     return parent.kind == NodeKind::kBinary && level(parent.op) != 0;
@@ -248,7 +248,13 @@ class CanonicalWriter {
         break;
       case NodeKind::kForall:
       case NodeKind::kExists:
-        return quantified(node, texts[node.children[0]], name);
+        return (node.kind == NodeKind::kForall ? "[" : "{") + names_of(node, name) +
+               (node.kind == NodeKind::kForall ? "] " : "} ") + texts[node.children[0]];
+      case NodeKind::kCount:
+      case NodeKind::kSum:
+        (out += node.name) += "{" + names_of(node, name);
+        for (const auto child : node.children) out += ": " + texts[child];
+        return out + "}";
     }
     const bool applied = node.kind == NodeKind::kApply;
     if (applied) (out += node.name) += '(';
@@ -265,18 +271,17 @@ class CanonicalWriter {
     return out;
   }
 
-  static std::string quantified(const Canonical& node, const std::string& body,
-                                const Naming& name) {
-    // The order of the variables says nothing.
+  /// The order of the variables says nothing.
+  static std::string names_of(const Canonical& node, const Naming& name) {
     std::vector<std::string> names;
     for (const auto variable : node.bound) names.push_back(name(variable));
     std::sort(names.begin(), names.end());
-    std::string out = node.kind == NodeKind::kForall ? "[" : "{";
+    std::string out;
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (i != 0) out += ',';
       out += names[i];
     }
-    return out + (node.kind == NodeKind::kForall ? "] " : "} ") + body;
+    return out;
   }
 
   std::vector<Canonical> nodes_;

@@ -62,7 +62,7 @@ FormulaId FormulaStore::conjunction(std::vector<FormulaId> parts) {
   std::vector<FormulaId> flat;
   flat.reserve(parts.size());
   for (const auto part : parts) {
-    if (!part.negated() && kind(part) == FormulaNodeKind::kAnd) {
+    if (!part.negated() && kind(part) == FormulaNodeKind::kAnd && !is_kept(part)) {
       const auto inner = children(part);
       flat.insert(flat.end(), inner.begin(), inner.end());
     } else {
@@ -80,6 +80,17 @@ FormulaId FormulaStore::conjunction(std::vector<FormulaId> parts) {
   if (flat.empty()) return truth();
   if (flat.size() == 1) return flat.front();
   return intern_and(flat);
+}
+
+FormulaId FormulaStore::kept_conjunction(FormulaId a, FormulaId b) {
+  if (a > b) std::swap(a, b);  // the constants come first
+  if (a == falsity() || a == b) return a;
+  if (a == truth()) return b;
+  if (b == ~a && !keeps_complements_) return falsity();
+  const auto before = nodes_.size();
+  const auto made = intern_and({a, b});
+  if (nodes_.size() != before) nodes_.back().kept = true;
+  return made;
 }
 
 FormulaId FormulaStore::disjunction(std::vector<FormulaId> parts) {
@@ -228,7 +239,8 @@ FormulaId rewrite_atoms(FormulaStore& store, FormulaId root,
       const auto part = memo.at(child.node());
       parts.push_back(child.negated() ? ~part : part);
     }
-    memo.emplace(node, store.conjunction(std::move(parts)));
+    memo.emplace(node, store.is_kept(id) ? store.kept_conjunction(parts[0], parts[1])
+                                         : store.conjunction(std::move(parts)));
     todo.pop_back();
   }
   const auto result = memo.at(root.node());

@@ -49,6 +49,9 @@ class FormulaStore {
   FormulaId disjunction(std::vector<FormulaId> parts);
   FormulaId conjunction(FormulaId a, FormulaId b) { return conjunction(std::vector{a, b}); }
   FormulaId disjunction(FormulaId a, FormulaId b) { return disjunction(std::vector{a, b}); }
+  /// The conjunction of two formulas as a node of its own, not spliced into others: formulas that
+  /// share long chains of them, as counters do, stay small.
+  FormulaId kept_conjunction(FormulaId a, FormulaId b);
   FormulaId implication(FormulaId a, FormulaId b) { return disjunction(~a, b); }
   FormulaId equivalence(FormulaId a, FormulaId b);
 
@@ -56,6 +59,7 @@ class FormulaStore {
   std::int32_t variable(FormulaId id) const { return nodes_[id.node()].variable; }
   /// Children of the And node behind `id`, whatever its sign. Valid until the next construction.
   std::span<const FormulaId> children(FormulaId id) const;
+  bool is_kept(FormulaId id) const { return nodes_[id.node()].kept; }
   std::size_t node_count() const { return nodes_.size(); }
   /// The formula of a node in order of construction: children come before their parents.
   FormulaId at(std::uint32_t node) const { return FormulaId(node << 1U); }
@@ -65,6 +69,7 @@ class FormulaStore {
     FormulaNodeKind kind = FormulaNodeKind::kTrue;
     std::int32_t variable = 0;
     std::uint32_t first_child = 0, child_count = 0;
+    bool kept = false;
   };
   FormulaId intern_and(const std::vector<FormulaId>& children);
   void grow_table();

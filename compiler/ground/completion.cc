@@ -29,7 +29,8 @@ constexpr std::size_t kMaxInstances = 1'000'000;  // of one predicate that are m
 
 CompletionWriter::CompletionWriter(GroundModel& model, Meaning meaning, bool lint)
     : model_(model), meaning_(meaning) {
-  if (lint && meaning == Meaning::kStandard) loops_.emplace(model);
+  if (model.typed().options.founded && meaning == Meaning::kStandard) founded_.emplace();
+  if (lint && meaning == Meaning::kStandard && !founded_) loops_.emplace(model);
   const auto& core = model.typed().core;
   for (const auto& completion : model.typed().completions) {
     auto kind = AtomKind::kPredicate;
@@ -63,10 +64,14 @@ bool CompletionWriter::note(const Axiom& axiom, FormulaId formula, Timepoint wid
                             const OpaqueEffects* effects) {
   if (entries_.empty()) return true;
   const bool old = meaning_ == Meaning::kDecreasoner;
-  if (old && note_old_clauses(axiom.label, formula)) return true;
-  const auto& formulas = model_.formulas();
+  if (old && note_old_clauses(axiom, formula)) return true;
+  auto& formulas = model_.formulas();
   bool any_reason = false;
-  if (formulas.kind(formula) == FormulaNodeKind::kAnd && !formula.negated()) {
+  if (founded_) {
+    for (const auto part : separate_conjuncts(formulas, formula)) {
+      any_reason = note_conjunct(axiom, part, width, effects) || any_reason;
+    }
+  } else if (formulas.kind(formula) == FormulaNodeKind::kAnd && !formula.negated()) {
     const auto children = formulas.children(formula);
     const std::vector<FormulaId> parts(children.begin(), children.end());
     for (const auto part : parts) {
@@ -80,7 +85,7 @@ bool CompletionWriter::note(const Axiom& axiom, FormulaId formula, Timepoint wid
 
 /// The 2005 reasoner asks of each clause with the atom what its other literals leave as a reason;
 /// a clause of the atom alone is a fact. False: it would name parts of the formula.
-bool CompletionWriter::note_old_clauses(const std::string& label, FormulaId formula) {
+bool CompletionWriter::note_old_clauses(const Axiom& axiom, FormulaId formula) {
   if (model_.formulas().kind(formula) == FormulaNodeKind::kTrue) return true;
   const auto form = old_clause_form(model_.formulas(), formula);
   if (form.named) return false;
@@ -90,13 +95,13 @@ bool CompletionWriter::note_old_clauses(const std::string& label, FormulaId form
       const auto atom = model_.atom(model_.formulas().variable(literal));
       for (auto& entry : entries_) {
         const auto& wanted = entry.completion->label;
-        if (!completes(entry, atom) || (wanted && *wanted != label)) continue;
+        if (!completes(entry, atom) || (wanted && *wanted != axiom.label)) continue;
         std::vector<FormulaId> others;
         for (const auto other : clause) {
           if (other != literal) others.push_back(~other);
         }
         const auto reason = model_.formulas().conjunction(std::move(others));
-        note_reason(atom, reason, Constraint::kOnce, entry);
+        note_reason(atom, reason, Constraint::kOnce, axiom.source, entry);
       }
     }
   }
@@ -113,7 +118,7 @@ bool CompletionWriter::note_conjunct(const Axiom& axiom, FormulaId formula, Time
       if (!completes(entry, atom) || (wanted && *wanted != axiom.label)) continue;
       const auto opposite = ~substitute(model_.formulas(), formula, variable, false);
       const auto reason = effects == nullptr ? opposite : effects->resolved(opposite);
-      note_reason(atom, reason, width, entry);
+      note_reason(atom, reason, width, axiom.source, entry);
       if (loops_) loops_->add(atom, reason, width, axiom.source);
       any_reason = true;
     }
@@ -122,20 +127,19 @@ bool CompletionWriter::note_conjunct(const Axiom& axiom, FormulaId formula, Time
 }
 
 void CompletionWriter::note_reason(const GroundAtom& atom, FormulaId reason, Timepoint width,
-                                   Entry& entry) {
+                                   const base::SourceRange& source, Entry& entry) {
   auto& reasons = entry.reasons[{atom.kind, atom.index}];
-  if (width == Constraint::kOnce) {
-    reasons.single[atom.time].push_back(reason);
-    return;
-  }
-  const Timepoint own_width = atom.kind == AtomKind::kHappens ? 1 : 0;
-  if (atom.time == 0 && width == own_width) {
-    reasons.always.push_back(reason);
-    return;
+  const auto note = [&](FormulaId said, std::vector<FormulaId>& list) {
+    list.push_back(said);
+    if (founded_) founded_->try_emplace({atom.kind, atom.index, said.bits()}, source);
+  };
+  if (width == Constraint::kOnce) return note(reason, reasons.single[atom.time]);
+  if (atom.time == 0 && width == (atom.kind == AtomKind::kHappens ? 1 : 0)) {
+    return note(reason, reasons.always);
   }
   for (Timepoint s = 0; s + width <= model_.horizon(); ++s) {
     const auto t = atom.time == GroundAtom::kUntimed ? atom.time : atom.time + s;
-    reasons.single[t].push_back(model_.shifted(reason, s));
+    note(model_.shifted(reason, s), reasons.single[t]);
   }
 }
 
@@ -191,7 +195,7 @@ void CompletionWriter::report_loops(base::DiagnosticSink& sink) {
       sink);
 }
 
-void CompletionWriter::write() {
+void CompletionWriter::write(std::size_t max_nodes, base::DiagnosticSink& sink) {
   for (auto& entry : entries_) {
     if (entry.kind == AtomKind::kPredicate) {
       write_predicates(entry);
@@ -199,6 +203,24 @@ void CompletionWriter::write() {
       write_timed(entry);
     }
   }
+  if (founded_) write_founded(max_nodes, sink);
+}
+
+void CompletionWriter::write_founded(std::size_t max_nodes, base::DiagnosticSink& sink) {
+  FoundedReasons founded(model_, *founded_, max_nodes, sink);
+  for (const auto& entry : entries_) {
+    for (const auto& [key, reasons] : entry.reasons) {
+      const auto [kind, index] = key;
+      if (may_be_true(kind, index)) founded.add(kind, index, reasons, entry.origin);
+    }
+  }
+  founded.write();
+}
+
+bool CompletionWriter::may_be_true(AtomKind kind, std::uint32_t index) const {
+  if (kind == AtomKind::kHappens) return model_.may_happen(index);
+  if (kind == AtomKind::kHoldsAt) return model_.may_hold(index);
+  return kind != AtomKind::kReleasedAt || model_.can_be_released(index);
 }
 
 /// Every ground atom of a completed predicate is completed, also those that no axiom mentions.
@@ -209,15 +231,10 @@ void CompletionWriter::write_timed(Entry& entry) {
     if (is_event) return model_.happens(index, t);
     return entry.kind == AtomKind::kHoldsAt ? model_.holds(index, t) : model_.released(index, t);
   };
-  const auto may_be_true = [&](std::uint32_t index) {
-    if (is_event) return model_.may_happen(index);
-    return entry.kind == AtomKind::kHoldsAt ? model_.may_hold(index)
-                                            : model_.can_be_released(index);
-  };
   if (width > model_.horizon() && meaning_ == Meaning::kStandard) return;
   const auto count = is_event ? model_.events().size() : model_.fluents().size();
   for (std::uint32_t index = 0; index < count; ++index) {
-    if (!may_be_true(index)) continue;
+    if (!may_be_true(entry.kind, index)) continue;
     auto& reasons = entry.reasons[{entry.kind, index}];
     if (reasons.single.empty() && meaning_ == Meaning::kStandard) {
       assert_completed(atom(index, 0), reasons.always, entry.origin, width);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -7,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/ground/founded_reasons.h"
 #include "compiler/ground/ground_model.h"
 #include "compiler/ground/opaque_effects.h"
 #include "compiler/ground/support_loops.h"
@@ -19,7 +21,8 @@ namespace parallax::compiler {
 /// (pointwise circumscription, Lifschitz 1986; for axioms of the form `body -> P(..)` this is the
 /// predicate completion of Mueller 2006, Theorem 2.1, and for a disjunction of two completed
 /// events it makes them exclusive). A predicate with several completions needs a reason for each.
-/// In the 2005 reasoner's meaning the formulas are the clauses that it makes of them.
+/// In the 2005 reasoner's meaning the formulas are the clauses that it makes of them. With
+/// `option founded on` reasons may not go in circles (FoundedReasons).
 class CompletionWriter {
  public:
   /// `lint`: atoms that are reasons of themselves are sought as well.
@@ -48,32 +51,30 @@ class CompletionWriter {
   /// completion.
   FormulaId reason(const GroundAtom& atom) const;
   /// Asserts the completions: false for atoms without a reason, also those of user predicates that
-  /// are first mentioned later.
-  void write();
+  /// are first mentioned later. `max_nodes`: the formulas that a circle of founded atoms may take.
+  void write(std::size_t max_nodes, base::DiagnosticSink& sink);
 
  private:
-  /// The reasons of one event, fluent or user predicate.
-  struct Reasons {
-    std::vector<FormulaId> always;  // at timepoint 0, valid for all
-    std::map<Timepoint, std::vector<FormulaId>> single;
-  };
   /// A completion with its reasons, by kind and index of the atom.
   struct Entry {
     const Completion* completion = nullptr;
     AtomKind kind = AtomKind::kPredicate;
     std::uint32_t origin = 0;
-    std::map<std::pair<AtomKind, std::uint32_t>, Reasons> reasons;
+    std::map<std::pair<AtomKind, std::uint32_t>, AtomReasons> reasons;
   };
 
   bool completes(const Entry& entry, const GroundAtom& atom) const;
+  bool may_be_true(AtomKind kind, std::uint32_t index) const;
   const Entry* first_entry(SymbolId predicate) const;
   bool note_conjunct(const Axiom& axiom, FormulaId formula, Timepoint width,
                      const OpaqueEffects* effects);
-  bool note_old_clauses(const std::string& label, FormulaId formula);
-  void note_reason(const GroundAtom& atom, FormulaId reason, Timepoint width, Entry& entry);
+  bool note_old_clauses(const Axiom& axiom, FormulaId formula);
+  void note_reason(const GroundAtom& atom, FormulaId reason, Timepoint width,
+                   const base::SourceRange& source, Entry& entry);
   void write_timed(Entry& entry);
   void mention_all_instances(SymbolId predicate);
   void write_predicates(Entry& entry);
+  void write_founded(std::size_t max_nodes, base::DiagnosticSink& sink);
   void assert_completed(FormulaId atom, std::vector<FormulaId> reasons, std::uint32_t origin,
                         Timepoint width);
 
@@ -81,6 +82,7 @@ class CompletionWriter {
   Meaning meaning_;
   std::vector<Entry> entries_;  // in the order of the model
   std::optional<SupportLoops> loops_;
+  std::optional<FoundedReasons::Sources> founded_;  // the axioms of reasons, if they are founded
 };
 
 }  // namespace parallax::compiler

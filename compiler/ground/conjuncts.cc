@@ -43,6 +43,7 @@ std::vector<Conjunct> conjuncts_of(const TypedModel& model, TypedFormulaId root,
       case FormulaKind::kIff:
       case FormulaKind::kForall:
       case FormulaKind::kExists:
+      case FormulaKind::kAggregate:
       case FormulaKind::kTemporal:
         break;
     }

@@ -19,11 +19,15 @@
 #include <array>
 #include <utility>
 
+#include "compiler/ground/weighted_sum.h"
+
 namespace parallax::compiler {
 namespace {
 
+/// Aggregates have instances as quantifiers do.
 bool is_quantifier(FormulaKind kind) {
-  return kind == FormulaKind::kForall || kind == FormulaKind::kExists;
+  return kind == FormulaKind::kForall || kind == FormulaKind::kExists ||
+         kind == FormulaKind::kAggregate;
 }
 
 bool is_leaf(FormulaKind kind) {
@@ -38,8 +42,9 @@ struct FormulaGrounder::Frame {
   const TypedFormula* formula = nullptr;
   std::size_t next_child = 0;
   std::vector<FormulaId> parts;
-  bool discarded = false;  // some part named nothing that exists
-  bool exists = false;     // some part named something that exists
+  std::vector<std::int64_t> weights;  // of the parts of an aggregate
+  bool discarded = false;             // some part named nothing that exists
+  bool exists = false;                // some part named something that exists
   bool exhausted = false;
   // Quantifiers:
   std::vector<VariableId> open;         // its variables without a value from outside
@@ -70,6 +75,11 @@ std::optional<FormulaId> FormulaGrounder::ground(TypedFormulaId root) {
     const auto& formula = typed_->formulas[id];
     if (is_leaf(formula.kind)) {
       result = leaf(formula);
+      have_result = true;
+      return;
+    }
+    if (formula.kind == FormulaKind::kAggregate && !number(formula.terms[0])) {
+      result.reset();
       have_result = true;
       return;
     }
@@ -117,8 +127,12 @@ std::optional<FormulaId> FormulaGrounder::ground(TypedFormulaId root) {
 }
 
 /// Notes the result of a part or an instance. True: the rest cannot change the outcome.
-bool FormulaGrounder::take_part(Frame& frame, std::optional<FormulaId> part) const {
-  if (!part) {
+bool FormulaGrounder::take_part(Frame& frame, std::optional<FormulaId> part) {
+  std::optional<std::int64_t> weight = 1;
+  if (part && frame.formula->kind == FormulaKind::kAggregate && frame.formula->terms.size() == 2) {
+    weight = number(frame.formula->terms[1]);
+  }
+  if (!part || !weight) {
     frame.discarded = true;
     return false;
   }
@@ -126,6 +140,7 @@ bool FormulaGrounder::take_part(Frame& frame, std::optional<FormulaId> part) con
   if (frame.in_product) return true;
   frame.parts.push_back(*part);
   const auto kind = frame.formula->kind;
+  if (kind == FormulaKind::kAggregate) frame.weights.push_back(*weight);
   const auto& formulas = model_->formulas();
   const bool both = is_quantifier(kind) || meaning_ == Meaning::kDecreasoner;
   return both && (((kind == FormulaKind::kAnd || kind == FormulaKind::kForall) &&
@@ -157,6 +172,9 @@ std::optional<FormulaId> FormulaGrounder::combine(Frame& frame) {
       return frame.formula->kind == FormulaKind::kForall ? formulas.conjunction(std::move(parts))
                                                          : formulas.disjunction(std::move(parts));
     }
+    case FormulaKind::kAggregate:
+      if (frame.discarded && !frame.exists) return std::nullopt;
+      return compared_sum(frame);
     case FormulaKind::kNot:
       if (!all_there) return std::nullopt;
       return ~parts[0];
@@ -175,6 +193,27 @@ std::optional<FormulaId> FormulaGrounder::combine(Frame& frame) {
   }
   PARALLAX_REQUIRE(false, "a frame is a connective or a quantifier");
   return std::nullopt;
+}
+
+std::optional<FormulaId> FormulaGrounder::compared_sum(Frame& frame) {
+  const auto limit = number(frame.formula->terms[0]);
+  std::vector<WeightedFormula> terms;
+  for (std::size_t i = 0; i < frame.parts.size(); ++i) {
+    terms.push_back({frame.parts[i], frame.weights[i]});
+  }
+  const auto sum = weighted_sum(*model_, terms, *limit);
+  if (!sum) {
+    terms_.report_overflow(frame.formula->source);
+    return std::nullopt;
+  }
+  return compare_sum(*model_, *sum, frame.formula->compare,
+                     [&](std::size_t nodes) { return spend(static_cast<std::int64_t>(nodes)); });
+}
+
+std::optional<std::int64_t> FormulaGrounder::number(TermId id) {
+  const auto value = term(id);
+  if (!value || model_->terms()[*value].kind != TermKind::kInteger) return std::nullopt;
+  return model_->terms()[*value].integer;
 }
 
 std::optional<FormulaId> FormulaGrounder::leaf(const TypedFormula& formula) {

@@ -72,8 +72,10 @@ class FormulaGrounder {
   std::optional<FormulaId> leaf(const TypedFormula& formula);
   std::optional<FormulaId> atom(const TypedFormula& formula);
   std::optional<FormulaId> timed_atom(const TypedFormula& formula);
-  bool take_part(Frame& frame, std::optional<FormulaId> part) const;
+  bool take_part(Frame& frame, std::optional<FormulaId> part);
   std::optional<FormulaId> combine(Frame& frame);
+  std::optional<FormulaId> compared_sum(Frame& frame);
+  std::optional<std::int64_t> number(TermId term);
   void begin_instances(Frame& frame, TypedFormulaId id);
   bool next_instance(Frame& frame);
   bool next_of_product(Frame& frame);

@@ -42,7 +42,7 @@ GroundModel::GroundModel(const TypedModel& model, GroundTermStore terms, Univers
   if (model.core.event) events_ = universe_.domain(*model.core.event);
   for (std::uint32_t i = 0; i < fluents_.size(); ++i) fluent_numbers_.emplace(fluents_[i], i);
   for (std::uint32_t i = 0; i < events_.size(); ++i) event_numbers_.emplace(events_[i], i);
-  const auto releasable = releasable_symbols();
+  const auto releasable = releasable_symbols(model);
   for (const auto fluent : fluents_) {
     releasable_.push_back(releasable[terms_[fluent].symbol.index()]);
   }
@@ -50,30 +50,28 @@ GroundModel::GroundModel(const TypedModel& model, GroundTermStore terms, Univers
   may_happen_.assign(events_.size(), true);
 }
 
-/// A fluent symbol needs ReleasedAt atoms if an axiom can release it, if it has no inertia, if its
-/// release is left open, or if some axiom speaks of ReleasedAt (about a variable fluent: all).
-std::vector<bool> GroundModel::releasable_symbols() const {
-  std::vector<bool> result(typed_->symbols.size(), false);
+std::vector<bool> releasable_symbols(const TypedModel& model) {
+  std::vector<bool> result(model.symbols.size(), false);
   bool all = false;
   const auto mark = [&](TermId id) {
-    const auto& term = typed_->terms[id];
+    const auto& term = model.terms[id];
     if (term.kind == TermKind::kApply) {
       result[term.symbol.index()] = true;
     } else {
       all = true;
     }
   };
-  for (std::size_t i = 0; i < typed_->symbols.size(); ++i) {
-    const auto& symbol = typed_->symbols[typed_->symbols.id_at(i)];
+  for (std::size_t i = 0; i < model.symbols.size(); ++i) {
+    const auto& symbol = model.symbols[model.symbols.id_at(i)];
     if (symbol.noninertial || symbol.manual_release) result[i] = true;
   }
-  for (const auto& effect : typed_->effects) {
+  for (const auto& effect : model.effects) {
     if (effect.kind == EffectKind::kReleases) mark(effect.fluent);
   }
-  for (const auto& formula : typed_->formulas) {
+  for (const auto& formula : model.formulas) {
     if (formula.kind != FormulaKind::kAtom) continue;
-    if (formula.predicate == typed_->core.released_at) mark(formula.terms[0]);
-    if (formula.predicate == typed_->core.releases) mark(formula.terms[1]);
+    if (formula.predicate == model.core.released_at) mark(formula.terms[0]);
+    if (formula.predicate == model.core.releases) mark(formula.terms[1]);
   }
   if (all) result.assign(result.size(), true);
   return result;
@@ -220,6 +218,9 @@ void GroundModel::require_always(FormulaId formula, std::uint32_t origin, Timepo
 }
 
 Timepoint GroundModel::needed_horizon_of(FormulaId root) const {
+  if (formulas_.kind(root) == FormulaNodeKind::kAtom) {
+    return atom(formulas_.variable(root)).needed_horizon();
+  }
   Timepoint latest = 0;
   for (const auto variable : atoms_of(formulas_, std::span(&root, 1))) {
     latest = std::max(latest, atom(variable).needed_horizon());

@@ -56,6 +56,11 @@ struct GroundObjective {
   std::vector<Term> terms;
 };
 
+/// By symbol: does the fluent need ReleasedAt atoms? It does if an axiom can release it, if it has
+/// no inertia, if its release is left open, or if some axiom speaks of ReleasedAt (about a variable
+/// fluent: all).
+std::vector<bool> releasable_symbols(const TypedModel& model);
+
 /// The model without variables: atoms, and the formulas that hold over them.
 class GroundModel {
  public:
@@ -151,7 +156,6 @@ class GroundModel {
   const std::vector<Origin>& origins() const { return origins_; }
 
  private:
-  std::vector<bool> releasable_symbols() const;
   static std::uint64_t timed_key(AtomKind kind, std::uint32_t index, Timepoint t);
   FormulaId timed(AtomKind kind, std::uint32_t index, Timepoint t);
 

@@ -23,6 +23,7 @@
 #include "compiler/base/codes/grounding.h"
 #include "compiler/formula/formula.h"
 #include "compiler/ground/at_most_one.h"
+#include "compiler/ground/check_grounding.h"
 #include "compiler/ground/completion.h"
 #include "compiler/ground/effect_constraints.h"
 #include "compiler/ground/effects.h"
@@ -48,7 +49,9 @@ namespace {
 /// over the atoms that are still possible. The passes stand in the table below.
 class Grounder {
  public:
-  Grounder(GroundModel& model, const GroundOptions& options, base::DiagnosticSink& sink)
+  /// `is_checked`: nothing is wanted but messages.
+  Grounder(GroundModel& model, const GroundOptions& options, bool is_checked,
+           base::DiagnosticSink& sink)
       : model_(model),
         typed_(model.typed()),
         options_(options),
@@ -61,6 +64,7 @@ class Grounder {
         opaque_(model, rows_),
         standard_(options.meaning == Meaning::kStandard),
         relevance_(standard_ && options.relevance),
+        is_checked_(is_checked),
         asserted_(typed_.axioms.size(), false) {
     for (const auto& axiom : typed_.axioms) {
       profiles_.push_back(time_profile(typed_, axiom.formula));
@@ -163,7 +167,7 @@ class Grounder {
 
   void completion() {
     completion_.report_loops(sink_);
-    completion_.write();
+    completion_.write(static_cast<std::size_t>(options_.max_instances), sink_);
   }
   void trajectories() { assert_trajectories(model_, rows_, grounder_, sink_); }
   void inertia() { assert_inertia(model_, rows_, options_); }
@@ -208,9 +212,10 @@ class Grounder {
   bool looks_for_meetings() const { return drops_meetings(model_, options_); }
   bool has_trajectories() const { return !typed_.trajectories.empty(); }
   bool looks_for_invariants() const {
-    return standard_ && options_.templates && options_.invariants;
+    return is_grounded() && standard_ && options_.templates && options_.invariants;
   }
-  bool has_old_meaning() const { return !standard_; }
+  bool denies_unmentioned() const { return is_grounded() && !standard_; }
+  bool is_grounded() const { return !is_checked_; }
 
   // --- what they share ---
 
@@ -367,7 +372,7 @@ class Grounder {
   CompletionWriter completion_;
   OpaqueEffects opaque_;
   std::vector<FluentGroup> groups_;  // known since `meetings`
-  bool standard_, relevance_;
+  bool standard_, relevance_, is_checked_;
   std::vector<TimeProfile> profiles_;  // by axiom
   std::vector<bool> asserted_;         // by axiom
 };
@@ -406,7 +411,7 @@ std::span<const Pass<Grounder>> Grounder::passes() {
        &G::text},
       {{"completion", "completed atoms without a reason are false"}, &G::completion, &G::text},
       {{"trajectories", "DEC3 and DEC4"}, &G::trajectories, &G::text, &G::has_trajectories},
-      {{"inertia", "DEC5 to DEC12 over the rows"}, &G::inertia, &G::text},
+      {{"inertia", "DEC5 to DEC12 over the rows"}, &G::inertia, &G::text, &G::is_grounded},
       {{"invariants",
         "groups of fluents of which at most one, or exactly one, holds; atoms that always agree"},
        &G::invariants,
@@ -415,7 +420,7 @@ std::span<const Pass<Grounder>> Grounder::passes() {
       {{"unmentioned-atoms", "atoms in no formula are false (--compat decreasoner)"},
        &G::unmentioned_atoms,
        &G::text,
-       &G::has_old_meaning},
+       &G::denies_unmentioned},
   }};
   return kPasses;
 }
@@ -424,18 +429,40 @@ std::span<const Pass<Grounder>> Grounder::passes() {
 
 std::vector<PassInfo> ground_passes() { return infos_of(Grounder::passes()); }
 
-base::Result<GroundModel> ground_model(const TypedModel& typed, const GroundOptions& options,
-                                       base::DiagnosticSink& sink, PassLog* log) {
+namespace {
+
+base::Result<GroundModel> run_grounder(const TypedModel& typed, const GroundOptions& options,
+                                       bool is_checked, base::DiagnosticSink& sink, PassLog* log) {
   const auto errors_before = sink.error_count();
+  for (const auto& formula : typed.formulas) {
+    if (formula.kind != FormulaKind::kAggregate || options.meaning == Meaning::kStandard) continue;
+    return sink.error(codes::kAggregateOldMeaning, formula.source);
+  }
+  if (typed.options.founded && options.meaning != Meaning::kStandard) {
+    return sink.error(codes::kFoundedOldMeaning, *typed.options.founded);
+  }
   GroundTermStore terms;
   auto universe = Universe::make(typed, options, terms, sink);
   if (!universe) return sink.already_reported();
   GroundModel model(typed, std::move(terms), *std::move(universe));
-  Grounder grounder(model, options, sink);
+  Grounder grounder(model, options, is_checked, sink);
   run_passes(Grounder::passes(), grounder, log);
   grounder.finish();
   if (sink.error_count() != errors_before) return sink.already_reported();
   return model;
+}
+
+}  // namespace
+
+base::Result<GroundModel> ground_model(const TypedModel& typed, const GroundOptions& options,
+                                       base::DiagnosticSink& sink, PassLog* log) {
+  return run_grounder(typed, options, false, sink, log);
+}
+
+base::Status check_grounding(const TypedModel& typed, const GroundOptions& options,
+                             base::DiagnosticSink& sink) {
+  if (!run_grounder(typed, options, true, sink, nullptr)) return sink.already_reported();
+  return base::Unit{};
 }
 
 }  // namespace parallax::compiler

@@ -17,6 +17,8 @@
 #include <deque>
 #include <unordered_map>
 
+#include "compiler/ground/components.h"
+
 namespace parallax::compiler {
 namespace {
 
@@ -59,53 +61,16 @@ class FixpointSolver {
     return needs;
   }
 
-  /// Strongly connected components, each after those that it needs (Tarjan
-  /// 1972).
   void find_components() {
-    constexpr std::size_t kNew = SIZE_MAX;
-    const auto count = needs_.size();
-    std::vector<std::size_t> index(count, kNew), low(count, 0);
-    std::vector<std::size_t> path;
-    component_of_.assign(count, kNew);
-    struct Visit {
-      std::size_t unknown, next;
-    };
-    std::size_t met = 0;
-    for (std::size_t root = 0; root < count; ++root) {
-      if (index[root] != kNew) continue;
-      std::vector<Visit> stack = {{root, 0}};
-      while (!stack.empty()) {
-        auto& [unknown, next] = stack.back();
-        if (next == 0) {
-          index[unknown] = low[unknown] = met++;
-          path.push_back(unknown);
-        }
-        if (next < needs_[unknown].size()) {
-          const auto other = needs_[unknown][next++].unknown;
-          if (index[other] == kNew) {
-            stack.push_back({other, 0});
-          } else if (component_of_[other] == kNew) {
-            low[unknown] = std::min(low[unknown], index[other]);
-          }
-          continue;
-        }
-        const auto done = unknown;
-        stack.pop_back();
-        if (!stack.empty()) {
-          auto& above = low[stack.back().unknown];
-          above = std::min(above, low[done]);
-        }
-        if (low[done] != index[done]) continue;
-        auto& component = components_.emplace_back();
-        std::size_t member = kNew;
-        do {
-          member = path.back();
-          path.pop_back();
-          component_of_[member] = components_.size() - 1;
-          component.push_back(member);
-        } while (member != done);
-        std::sort(component.begin(), component.end());
-      }
+    std::vector<std::vector<std::size_t>> graph;
+    for (const auto& needs : needs_) {
+      auto& unknowns = graph.emplace_back();
+      for (const auto& need : needs) unknowns.push_back(need.unknown);
+    }
+    components_ = strong_components(graph);
+    component_of_.resize(graph.size());
+    for (std::size_t c = 0; c < components_.size(); ++c) {
+      for (const auto member : components_[c]) component_of_[member] = c;
     }
   }
 

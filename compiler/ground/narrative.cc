@@ -45,7 +45,7 @@ void for_each_positive_event(const TypedModel& model, TypedFormulaId root, const
       const bool flips =
           formula.kind == FormulaKind::kNot || (formula.kind == FormulaKind::kImplies && i == 0);
       if (flips) std::swap(child.positive, child.negative);
-      if (formula.kind == FormulaKind::kIff) child.positive = child.negative = true;
+      if (formula.mixes_polarity()) child.positive = child.negative = true;
       todo.push_back(child);
     }
   }

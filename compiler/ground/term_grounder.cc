@@ -53,23 +53,10 @@ std::optional<bool> TermGrounder::compare(const TypedFormula& formula) {
   const auto left = term(formula.terms[0]);
   const auto right = term(formula.terms[1]);
   if (!left || !right) return std::nullopt;
-  const auto a = model_->terms()[*left].integer;
-  const auto b = model_->terms()[*right].integer;
-  switch (formula.compare) {
-    case CompareOp::kEqual:
-      return *left == *right;
-    case CompareOp::kNotEqual:
-      return *left != *right;
-    case CompareOp::kLess:
-      return a < b;
-    case CompareOp::kLessEqual:
-      return a <= b;
-    case CompareOp::kGreater:
-      return a > b;
-    case CompareOp::kGreaterEqual:
-      return a >= b;
-  }
-  return std::nullopt;
+  // Terms are equal if they are the same; only integers have an order.
+  if (formula.compare == CompareOp::kEqual) return *left == *right;
+  if (formula.compare == CompareOp::kNotEqual) return *left != *right;
+  return compares(model_->terms()[*left].integer, formula.compare, model_->terms()[*right].integer);
 }
 
 bool TermGrounder::arguments_fit(const Symbol& symbol,
@@ -155,6 +142,11 @@ std::optional<GroundTermId> TermGrounder::term(TermId root) {
   return values.back();
 }
 
+void TermGrounder::report_overflow(const base::SourceRange& source) {
+  sink_->error(codes::kIntegerOverflow, source);
+  failed_ = true;
+}
+
 std::optional<GroundTermId> TermGrounder::arithmetic(const Term& node, GroundTermId left,
                                                      GroundTermId right) {
   const auto& terms = model_->terms();
@@ -188,8 +180,7 @@ std::optional<GroundTermId> TermGrounder::arithmetic(const Term& node, GroundTer
       break;
   }
   if (overflow) {
-    sink_->error(codes::kIntegerOverflow, node.source);
-    failed_ = true;
+    report_overflow(node.source);
     return std::nullopt;
   }
   return model_->terms().integer(value);

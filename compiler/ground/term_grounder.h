@@ -36,6 +36,7 @@ class TermGrounder {
 
   /// Starts a new budget of instances, reported at `blame`.
   void start(base::SourceRange blame);
+  void report_overflow(const base::SourceRange& source);
   /// True once an error was reported since `start`.
   bool failed() const { return failed_; }
   /// Counts `more` instances against the budget; false (and reported) when it is spent.

@@ -66,7 +66,7 @@ class Profiler {
       const auto& formula = model_.formulas[todo.back()];
       todo.pop_back();
       todo.insert(todo.end(), formula.children.begin(), formula.children.end());
-      if (formula.kind == FormulaKind::kCompare) {
+      if (formula.kind == FormulaKind::kCompare || formula.kind == FormulaKind::kAggregate) {
         for (const auto term : formula.terms) other_use(term);
       }
       if (formula.kind == FormulaKind::kAtom) visit_atom(formula);
@@ -91,6 +91,7 @@ class Profiler {
     }
     if (!term->variable) {
       literal_ = true;
+      latest_ = std::max(latest_, term->offset);
       return;
     }
     if (variable_ && *variable_ != *term->variable) odd_ = true;
@@ -107,13 +108,14 @@ class Profiler {
     TimeProfile result;
     if (!any_) return result;
     result.shape = TimeShape::kMixed;
+    constexpr std::int64_t kFar = 1'000'000;
     if (!odd_ && !variable_) result.shape = TimeShape::kFixed;
+    if (!odd_ && !variable_) result.last = static_cast<Timepoint>(std::min(latest_, kFar));
     if (odd_ || literal_ || !variable_) return result;
     const auto variable = *variable_;
     const bool outermost =
         std::find(universal.begin(), universal.end(), variable) != universal.end();
     const bool elsewhere = std::find(others_.begin(), others_.end(), variable) != others_.end();
-    constexpr std::int64_t kFar = 1'000'000;
     if (!outermost || elsewhere || model_.variables[variable].sort != model_.core.time ||
         least_ < -kFar || most_ > kFar) {
       return result;
@@ -131,15 +133,18 @@ class Profiler {
   std::optional<VariableId> variable_;
   // The variable is a timepoint itself, whatever the formula says of it.
   std::int64_t least_ = 0, most_ = 0;
+  std::int64_t latest_ = 0;  // of the integers
   std::vector<VariableId> others_;
 };
 
 }  // namespace
 
-TimeProfile time_profile(const TypedModel& model, TypedFormulaId root) {
+TimeProfile time_profile(const TypedModel& model, TypedFormulaId root,
+                         std::optional<VariableId> free) {
   Profiler profiler(model);
   profiler.visit(root);
   std::vector<VariableId> universal;
+  if (free) universal.push_back(*free);
   auto id = root;
   while (model.formulas[id].kind == FormulaKind::kForall) {
     const auto& variables = model.formulas[id].variables;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "compiler/artifact/literal.h"
 #include "compiler/sema/typed_model.h"
@@ -21,10 +22,14 @@ struct TimeProfile {
   VariableId variable;
   Timepoint back = 0;   // the variable's value at which the earliest timepoint is 0
   Timepoint width = 0;  // the horizon that the formula needs then; it holds 0 .. horizon - width
+  // kFixed:
+  Timepoint last = 0;  // the latest timepoint in it
 };
 
-/// Linear in the formula. `variable` of a uniform formula stands in the quantifiers at its root.
-TimeProfile time_profile(const TypedModel& model, TypedFormulaId formula);
+/// Linear in the formula. `variable` of a uniform formula stands in the quantifiers at its root, or
+/// is the `free` one.
+TimeProfile time_profile(const TypedModel& model, TypedFormulaId formula,
+                         std::optional<VariableId> free = std::nullopt);
 
 /// The same for an effect axiom: uniform if its condition speaks of the event's own timepoint and
 /// the one after it only.

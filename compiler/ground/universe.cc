@@ -24,15 +24,18 @@ namespace {
 
 constexpr std::size_t kFirstTableSize = 256;  // a power of two
 
+/// Each part is mixed by itself, so that the low bits, which choose the slot, depend on all of
+/// them: a model may have hundreds of symbols without arguments.
 std::size_t hash_of(const GroundTerm& term, std::span<const GroundTermId> arguments) {
-  auto h = static_cast<std::uint64_t>(term.integer) ^ (std::uint64_t{term.object.index()} << 20U) ^
-           (std::uint64_t{term.symbol.index()} << 40U) ^ static_cast<std::uint64_t>(term.kind);
+  std::uint64_t h = 0x9e3779b97f4a7c15ULL;
   const auto mix = [&](std::uint64_t value) {
     h ^= value;
     h *= 0xbf58476d1ce4e5b9ULL;
     h ^= h >> 29U;
   };
-  mix(0x9e3779b97f4a7c15ULL);
+  mix(static_cast<std::uint64_t>(term.integer));
+  mix(std::uint64_t{term.object.index()} << 32U | term.symbol.index());
+  mix(static_cast<std::uint64_t>(term.kind));
   for (const auto argument : arguments) mix(argument.index());
   return static_cast<std::size_t>(h);
 }

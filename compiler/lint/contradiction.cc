@@ -46,24 +46,6 @@ CompareOp opposite(CompareOp op) {
   return op;
 }
 
-bool holds(std::int64_t left, CompareOp op, std::int64_t right) {
-  switch (op) {
-    case CompareOp::kEqual:
-      return left == right;
-    case CompareOp::kNotEqual:
-      return left != right;
-    case CompareOp::kLess:
-      return left < right;
-    case CompareOp::kLessEqual:
-      return left <= right;
-    case CompareOp::kGreater:
-      return left > right;
-    case CompareOp::kGreaterEqual:
-      return left >= right;
-  }
-  return false;
-}
-
 class Search {
  public:
   explicit Search(const LintContext& context) : context_(context), model_(context.model()) {}
@@ -172,7 +154,7 @@ class Search {
     }
     const auto x = number(left), y = number(right);
     if (x && y) {
-      if (holds(*x, op, *y)) return std::nullopt;
+      if (compares(*x, op, *y)) return std::nullopt;
       return "`" + context_.text(formula.source) + "` is false";
     }
     if (is_constant(left) && is_constant(right)) {

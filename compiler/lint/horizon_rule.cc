@@ -135,6 +135,7 @@ class HorizonRule {
       case FormulaKind::kFalse:
       case FormulaKind::kAtom:
       case FormulaKind::kIff:
+      case FormulaKind::kAggregate:
       case FormulaKind::kTemporal:
         return;
     }
@@ -238,7 +239,7 @@ class HorizonRule {
       const auto id = todo.back();
       const auto& formula = model_.formulas[id];
       todo.pop_back();
-      if (formula.kind == FormulaKind::kExists || formula.kind == FormulaKind::kForall) continue;
+      if (!formula.variables.empty()) continue;
       todo.insert(todo.end(), formula.children.begin(), formula.children.end());
       if (formula.kind != FormulaKind::kAtom || head == id) continue;
       bool event = false;
@@ -261,7 +262,7 @@ class HorizonRule {
     while (!todo.empty()) {
       const auto& formula = model_.formulas[todo.back()];
       todo.pop_back();
-      if (formula.kind == FormulaKind::kExists || formula.kind == FormulaKind::kForall) continue;
+      if (!formula.variables.empty()) continue;
       todo.insert(todo.end(), formula.children.begin(), formula.children.end());
       if (formula.kind != FormulaKind::kAtom) continue;
       bool event = false;
@@ -277,6 +278,7 @@ class HorizonRule {
   void look(TypedFormulaId id, bool positive, bool negative) {
     if (!why_.empty()) return;
     const auto& formula = model_.formulas[id];
+    if (formula.kind == FormulaKind::kAggregate) return look_at_sum(formula, positive, negative);
     const bool exists = formula.kind == FormulaKind::kExists;
     if (exists || formula.kind == FormulaKind::kForall) {
       const auto body = formula.children[0];
@@ -294,6 +296,21 @@ class HorizonRule {
       look(formula.children[i], both || (flips ? negative : positive),
            both || (flips ? positive : negative));
     }
+  }
+
+  /// More instances make `>=` true and `<=` false; they may turn a sum or an equation either way.
+  void look_at_sum(const TypedFormula& formula, bool positive, bool negative) {
+    const auto op = formula.compare;
+    const bool counts = formula.terms.size() == 1;
+    const bool rises = counts && (op == CompareOp::kGreater || op == CompareOp::kGreaterEqual);
+    const bool falls = counts && (op == CompareOp::kLess || op == CompareOp::kLessEqual);
+    const bool up = (!falls && positive) || (!rises && negative);
+    const bool down = (!falls && negative) || (!rises && positive);
+    if (up) (void)look_at_ways(formula.variables, formula.children[0], true, false);
+    const auto outside = outer_;
+    outer_ = inside(formula.variables, formula.children[0]);
+    look(formula.children[0], up, down);
+    outer_ = outside;
   }
 
   void know(TermId time, bool event) {

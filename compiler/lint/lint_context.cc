@@ -20,7 +20,7 @@ void push_children(const TypedModel& model, const Visit& visit, std::vector<Visi
     const bool flips =
         formula.kind == FormulaKind::kNot || (formula.kind == FormulaKind::kImplies && i == 0);
     if (flips) std::swap(child.positive, child.negative);
-    if (formula.kind == FormulaKind::kIff) child.positive = child.negative = true;
+    if (formula.mixes_polarity()) child.positive = child.negative = true;
     stack.push_back(child);
   }
 }
@@ -38,23 +38,6 @@ std::vector<TypedFormulaId> positive_atoms(const TypedModel& model, TypedFormula
     push_children(model, visit, stack);
   }
   return atoms;
-}
-
-CompareOp mirrored(CompareOp op) {
-  switch (op) {
-    case CompareOp::kEqual:
-    case CompareOp::kNotEqual:
-      return op;
-    case CompareOp::kLess:
-      return CompareOp::kGreater;
-    case CompareOp::kLessEqual:
-      return CompareOp::kGreaterEqual;
-    case CompareOp::kGreater:
-      return CompareOp::kLess;
-    case CompareOp::kGreaterEqual:
-      return CompareOp::kLessEqual;
-  }
-  return op;
 }
 
 LintContext::LintContext(const ModelAst& ast, const TypedModel& model, base::DiagnosticSink& sink)

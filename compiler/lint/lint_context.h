@@ -40,9 +40,6 @@ void for_each_term(const TypedModel& model, TermId root, const Visit& visit) {
 /// be a reason for.
 std::vector<TypedFormulaId> positive_atoms(const TypedModel& model, TypedFormulaId root);
 
-/// The comparison that says the same with its sides exchanged: `<` for `>`.
-CompareOp mirrored(CompareOp op);
-
 /// A model, and what several rules ask about it. Model and texts must outlive it.
 class LintContext {
  public:

@@ -23,10 +23,9 @@ class VariableUse {
       const Step step = stack_.back();
       stack_.pop_back();
       const Node& node = ast_[step.node];
-      const bool quantifier = node.kind == NodeKind::kForall || node.kind == NodeKind::kExists;
       if (step.leaving) {
         close(node);
-      } else if (quantifier) {
+      } else if (node.bound_count() > 0) {
         open(step.node, node);
       } else if (node.kind == NodeKind::kName) {
         const auto found = scope_.find(ast_.name(node));
@@ -44,15 +43,17 @@ class VariableUse {
   };
 
   void open(NodeId id, const Node& node) {
-    for (std::uint32_t i = 0; i + 1 < node.child_count; ++i) {
+    for (std::uint32_t i = 0; i < node.bound_count(); ++i) {
       scope_[ast_.name(ast_[ast_.child(node, i)])].push_back(false);
     }
     stack_.push_back({id, true});
-    stack_.push_back({ast_.child(node, node.child_count - 1), false});
+    for (auto i = node.child_count; i-- > node.bound_count();) {
+      stack_.push_back({ast_.child(node, i), false});
+    }
   }
 
   void close(const Node& node) {
-    for (auto i = node.child_count - 1; i-- > 0;) {
+    for (auto i = node.bound_count(); i-- > 0;) {
       const Node& variable = ast_[ast_.child(node, i)];
       auto& used = scope_[ast_.name(variable)];
       if (!used.back()) {

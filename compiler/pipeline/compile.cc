@@ -12,12 +12,15 @@
 #include "compiler/base/codes/grounding.h"
 #include "compiler/base/codes/names.h"
 #include "compiler/base/codes/plans.h"
+#include "compiler/base/contract.h"
 #include "compiler/base/words.h"
 #include "compiler/cnf/encoder.h"
+#include "compiler/ground/check_grounding.h"
 #include "compiler/ground/formula_grounder.h"
 #include "compiler/ground/grounder.h"
 #include "compiler/interpreter/unroller.h"
 #include "compiler/lint/lint.h"
+#include "compiler/pipeline/check_texts.h"
 #include "compiler/pipeline/objective.h"
 #include "compiler/pipeline/plan_encoder.h"
 #include "compiler/pipeline/plan_formulas.h"
@@ -348,8 +351,11 @@ std::vector<PassInfo> compile_passes() {
   return passes;
 }
 
-base::Result<Compilation> compile_model(const CompileInput& input, base::SourceFiles& files,
-                                        base::DiagnosticSink& sink) {
+namespace {
+
+/// Loads, checks and lints the model.
+base::Result<TypedModel> typed_model(const CompileInput& input, base::SourceFiles& files,
+                                     base::DiagnosticSink& sink) {
   // In the old meaning, only differences that are not reproduced are reported.
   if (input.ground.meaning == Meaning::kDecreasoner) {
     for (const auto code : reproduced_differences()) sink.mute(code);
@@ -373,6 +379,27 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
     lint_model(horizon_rules(), *ast, *typed, sink);
   }
   lint_model(difference_rules(), *ast, *typed, sink);
+  return typed;
+}
+
+}  // namespace
+
+base::Status check_texts(const CompileInput& input, base::SourceFiles& files,
+                         base::DiagnosticSink& sink) {
+  PARALLAX_REQUIRE(!input.plan && input.constraints.empty() && input.objectives.empty() &&
+                       !input.objectives_of_model,
+                   "a model alone");
+  const auto typed = typed_model(input, files, sink);
+  if (!typed) return sink.already_reported();
+  auto ground_options = input.ground;
+  ground_options.lint = input.lint;
+  return check_grounding(*typed, ground_options, sink);
+}
+
+base::Result<Compilation> compile_model(const CompileInput& input, base::SourceFiles& files,
+                                        base::DiagnosticSink& sink) {
+  auto typed = typed_model(input, files, sink);
+  if (!typed) return sink.already_reported();
 
   // Constraints and the plan are independent: report the errors of both.
   auto constraints =

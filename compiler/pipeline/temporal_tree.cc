@@ -154,6 +154,7 @@ std::optional<TemporalTree::Number> TemporalTree::make(TypedFormulaId id, bool n
     case FormulaKind::kFalse:
     case FormulaKind::kAtom:
     case FormulaKind::kCompare:
+    case FormulaKind::kAggregate:
       break;
   }
   return std::nullopt;

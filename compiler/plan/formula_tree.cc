@@ -62,8 +62,10 @@ bool is_mapping_function(std::string_view name) {
   return name == "region" || name == "place" || name == "gaze";
 }
 
-bool is_quantifier(const FormulaNode& node) {
-  return node.kind == NodeKind::kForall || node.kind == NodeKind::kExists;
+/// How many of the first children are variables that the node binds.
+std::size_t bound_count(const FormulaNode& node) {
+  if (node.kind == NodeKind::kSum) return node.children.size() - 2;
+  return is_quantifier(node.kind) || node.kind == NodeKind::kCount ? node.children.size() - 1 : 0;
 }
 
 class TreeReader {
@@ -156,7 +158,7 @@ class TreeReader {
     for (std::uint32_t i = 0; i < out_.nodes.size(); ++i) {
       const auto& node = out_.nodes[i];
       first[i] = node.children.empty() ? i : first[node.children.front()];
-      if (is_quantifier(node)) opening[first[i]].push_back(i);
+      if (bound_count(node) > 0) opening[first[i]].push_back(i);
     }
     Scope scope;
     for (std::uint32_t i = 0; i < out_.nodes.size(); ++i) {
@@ -165,7 +167,7 @@ class TreeReader {
         if (!open(out_.nodes[*at], scope)) return false;
       }
       auto& node = out_.nodes[i];
-      if (is_quantifier(node)) close(node, scope);
+      close(node, scope);
       if (node.kind != NodeKind::kName || node.leaf != LeafKind::kName) continue;
       const auto bound = scope.find(out_.name(node));
       if (bound == scope.end() || bound->second.empty()) continue;
@@ -177,7 +179,7 @@ class TreeReader {
 
   using Scope = std::map<std::string, std::vector<std::uint32_t>, std::less<>>;
   bool open(const FormulaNode& quantifier, Scope& scope) {
-    for (std::size_t i = 0; i + 1 < quantifier.children.size(); ++i) {
+    for (std::size_t i = 0; i < bound_count(quantifier); ++i) {
       const auto& variable = out_.nodes[quantifier.children[i]];
       const std::string name(out_.name(variable));
       if (variable.leaf == LeafKind::kParameter) {
@@ -190,7 +192,7 @@ class TreeReader {
     return true;
   }
   void close(const FormulaNode& quantifier, Scope& scope) {
-    for (std::size_t i = 0; i + 1 < quantifier.children.size(); ++i) {
+    for (std::size_t i = 0; i < bound_count(quantifier); ++i) {
       scope[std::string(out_.name(out_.nodes[quantifier.children[i]]))].pop_back();
     }
   }

@@ -260,6 +260,7 @@ FormulaTrees::Node FormulaTrees::connect(FormulaKind kind, const std::vector<Nod
     case FormulaKind::kCompare:
     case FormulaKind::kForall:
     case FormulaKind::kExists:
+    case FormulaKind::kAggregate:
     case FormulaKind::kTemporal:
       break;
   }
@@ -267,8 +268,21 @@ FormulaTrees::Node FormulaTrees::connect(FormulaKind kind, const std::vector<Nod
   return kFalsity;
 }
 
+FormulaTrees::Node FormulaTrees::compared(Sum sum, const std::vector<Node>& parts) {
+  if (std::all_of(parts.begin(), parts.end(), [](Node part) { return part <= kTruth; })) {
+    std::int64_t total = 0;
+    for (std::size_t i = 0; i < parts.size(); ++i) total += parts[i] == kTruth ? sum.weights[i] : 0;
+    return constant(compares(total, sum.compare, sum.number));
+  }
+  const auto node = add(FormulaKind::kAggregate, parts);
+  nodes_[node].sum = static_cast<std::uint32_t>(sums_.size());
+  sums_.push_back(std::move(sum));
+  return node;
+}
+
 void FormulaTrees::rewind(std::size_t size) {
   while (nodes_.size() > size) {
+    if (nodes_.back().kind == FormulaKind::kAggregate) sums_.pop_back();
     if (nodes_.back().kind != FormulaKind::kAtom) parts_.resize(nodes_.back().first);
     nodes_.pop_back();
   }
@@ -324,14 +338,12 @@ std::vector<std::uint32_t> FormulaTrees::effects_of(Node root, bool negative) co
   return ascending(std::move(effects));
 }
 
-bool FormulaTrees::value(Node node, const Values& values, const Effects& effects) const {
+bool FormulaTrees::sided_value(Node node, const Sides& sides) const {
   const auto& entry = nodes_[node];
-  const auto part = [&](std::uint32_t i) {
-    return value(parts_[entry.first + i], values, effects);
-  };
-  /// Not the part, with the effects in it that count for the whole turned round.
+  const auto part = [&](std::uint32_t i) { return sided_value(parts_[entry.first + i], sides); };
+  /// Not the part, with what counts for the whole turned round.
   const auto no_part = [&](std::uint32_t i) {
-    return !value(parts_[entry.first + i], values, {effects.negative, effects.positive});
+    return !sided_value(parts_[entry.first + i], sides.turned());
   };
   switch (entry.kind) {
     case FormulaKind::kTrue:
@@ -339,7 +351,7 @@ bool FormulaTrees::value(Node node, const Values& values, const Effects& effects
     case FormulaKind::kFalse:
       return false;
     case FormulaKind::kAtom:
-      return (entry.is_effect ? *effects.positive : values)[entry.first] != 0;
+      return (entry.is_effect ? *sides.effects.positive : *sides.positive)[entry.first] != 0;
     case FormulaKind::kNot:
       return no_part(0);
     case FormulaKind::kIff:
@@ -354,6 +366,8 @@ bool FormulaTrees::value(Node node, const Values& values, const Effects& effects
         if (part(i)) return true;
       }
       return false;
+    case FormulaKind::kAggregate:
+      return sided_value(sums_[entry.sum], entry, sides);
     case FormulaKind::kImplies:
     case FormulaKind::kCompare:
     case FormulaKind::kForall:
@@ -362,6 +376,32 @@ bool FormulaTrees::value(Node node, const Values& values, const Effects& effects
       break;
   }
   PARALLAX_REQUIRE(false, "a tree has atoms and connectives");
+  return false;
+}
+
+/// Parts count for a bound from below, and against one from above; with weights below 0 the other
+/// way round.
+bool FormulaTrees::sided_value(const Sum& sum, const Entry& entry, const Sides& sides) const {
+  std::int64_t low = 0, high = 0;  // the totals that count for the bounds from below and above
+  for (std::uint32_t i = 0; i < entry.count; ++i) {
+    const auto weight = sum.weights[i];
+    const bool plain = sided_value(parts_[entry.first + i], sides);
+    const bool turned = sided_value(parts_[entry.first + i], sides.turned());
+    low += (weight > 0 ? plain : turned) ? weight : 0;
+    high += (weight > 0 ? turned : plain) ? weight : 0;
+  }
+  switch (sum.compare) {
+    case CompareOp::kEqual:
+      return low >= sum.number && high <= sum.number;
+    case CompareOp::kNotEqual:
+      return low > sum.number || high < sum.number;
+    case CompareOp::kGreater:
+    case CompareOp::kGreaterEqual:
+      return compares(low, sum.compare, sum.number);
+    case CompareOp::kLess:
+    case CompareOp::kLessEqual:
+      return compares(high, sum.compare, sum.number);
+  }
   return false;
 }
 

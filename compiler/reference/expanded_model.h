@@ -95,6 +95,14 @@ class FormulaTrees {
   /// kNot, kAnd, kOr, kImplies or kIff over its parts.
   Node connect(FormulaKind kind, const std::vector<Node>& parts);
 
+  /// The sum of the weights of its true parts, compared with a number.
+  struct Sum {
+    CompareOp compare = CompareOp::kEqual;
+    std::int64_t number = 0;
+    std::vector<std::int64_t> weights;  // by part
+  };
+  Node compared(Sum sum, const std::vector<Node>& parts);
+
   std::size_t size() const { return nodes_.size(); }
   /// Forgets the nodes made since there were `size` of them; nobody refers to them.
   void rewind(std::size_t size);
@@ -112,8 +120,18 @@ class FormulaTrees {
     const Values* positive = nullptr;
     const Values* negative = nullptr;
   };
-  /// The truth value where values[a] tells whether atom a is true. As deep as the tree.
-  bool value(Node node, const Values& values, const Effects& effects) const;
+  /// The same for atoms: values of those that count for the formula, and against it.
+  struct Sides {
+    const Values* positive = nullptr;
+    const Values* negative = nullptr;
+    Effects effects;
+    Sides turned() const { return {negative, positive, {effects.negative, effects.positive}}; }
+  };
+  /// The truth value where each value a tells whether atom a is true. As deep as the tree.
+  bool sided_value(Node node, const Sides& sides) const;
+  bool value(Node node, const Values& values, const Effects& effects) const {
+    return sided_value(node, {&values, &values, effects});
+  }
   /// The truth value of a tree without effects.
   bool value(Node node, const Values& values) const { return value(node, values, {}); }
 
@@ -123,12 +141,15 @@ class FormulaTrees {
     std::uint32_t first = 0;  // the atom or effect, or the place of the first part in parts_
     std::uint32_t count = 0;
     bool is_effect = false;  // kAtom
+    std::uint32_t sum = 0;   // kAggregate: its place in sums_
   };
   Node add(FormulaKind kind, const std::vector<Node>& parts);
+  bool sided_value(const Sum& sum, const Entry& entry, const Sides& sides) const;
   Node junction(bool conjunction, const std::vector<Node>& parts);
 
   std::vector<Entry> nodes_;
   std::vector<Node> parts_;
+  std::vector<Sum> sums_;
 };
 
 /// A formula of the expanded model, and the last timepoint that must exist for its atoms to.

@@ -1,6 +1,8 @@
 #include "compiler/reference/model_expander.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <limits>
 
 #include "compiler/base/ground_name.h"
 
@@ -268,6 +270,9 @@ std::optional<ModelExpander::Node> ModelExpander::expand(TypedFormulaId id) {
     case FormulaKind::kExists:
       node = quantified(formula);
       break;
+    case FormulaKind::kAggregate:
+      node = aggregate(formula);
+      break;
     case FormulaKind::kNot:
     case FormulaKind::kAnd:
     case FormulaKind::kOr:
@@ -320,20 +325,33 @@ std::optional<ModelExpander::Node> ModelExpander::compare(const TypedFormula& fo
   const auto a = terms_.number(*left);
   const auto b = terms_.number(*right);
   if (!a || !b) return std::nullopt;  // only integers have an order
-  switch (formula.compare) {
-    case CompareOp::kLess:
-      return FormulaTrees::constant(*a < *b);
-    case CompareOp::kLessEqual:
-      return FormulaTrees::constant(*a <= *b);
-    case CompareOp::kGreater:
-      return FormulaTrees::constant(*a > *b);
-    case CompareOp::kGreaterEqual:
-      return FormulaTrees::constant(*a >= *b);
-    case CompareOp::kEqual:
-    case CompareOp::kNotEqual:
-      break;
-  }
-  return std::nullopt;
+  return FormulaTrees::constant(compares(*a, formula.compare, *b));
+}
+
+/// Instances that do not exist are not counted; if all are such, neither does the whole. A sum
+/// beyond 64 bits is an error of the model, which is not checked then.
+std::optional<ModelExpander::Node> ModelExpander::aggregate(const TypedFormula& formula) {
+  const auto limit = term(formula.terms[0]);
+  const auto number = limit ? terms_.number(*limit) : std::nullopt;
+  if (!number) return std::nullopt;
+  FormulaTrees::Sum sum{formula.compare, *number, {}};
+  std::vector<Node> parts;
+  std::int64_t largest = 0;
+  bool tried = false;
+  for_each(formula.variables, [&] {
+    tried = true;
+    const auto part = expand(formula.children[0]);
+    const auto weight = formula.terms.size() == 2 ? term(formula.terms[1]) : std::nullopt;
+    const auto value = weight ? terms_.number(*weight) : std::nullopt;
+    if (!part || (formula.terms.size() == 2 && !value)) return;
+    parts.push_back(*part);
+    sum.weights.push_back(value.value_or(1));
+    const auto least = -std::numeric_limits<std::int64_t>::max();
+    const auto size = std::abs(std::max(sum.weights.back(), least));
+    if (__builtin_add_overflow(largest, size, &largest)) budget_.spend_all();
+  });
+  if (budget_.spent() || (tried && parts.empty())) return std::nullopt;
+  return out_.trees_.compared(std::move(sum), parts);
 }
 
 std::optional<ModelExpander::Node> ModelExpander::atom(const TypedFormula& formula) {

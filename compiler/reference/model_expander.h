@@ -54,6 +54,7 @@ class ModelExpander {
   /// None: the formula does not exist.
   std::optional<Node> expand(TypedFormulaId formula);
   std::optional<Node> quantified(const TypedFormula& formula);
+  std::optional<Node> aggregate(const TypedFormula& formula);
   std::optional<Node> connected(const TypedFormula& formula);
   std::optional<Node> atom(const TypedFormula& formula);
   std::optional<Node> event_atom(const std::vector<Value>& arguments);

@@ -11,12 +11,16 @@
 // too many, too many give one with too few, and they approach each other. If they still differ
 // when nothing changes, an effect depends on its own absence, which is a finding as well.
 //
+// Founded atoms are derived in rounds, from none on: an axiom is a reason if it is false without
+// the atom, and if completed atoms that it asks for count only where they have been derived.
+//
 // Cost: each formula once, and for each completed atom all that may be its reasons, within a
 // limit. The fixpoint for n effects takes at most n rounds of two times n sweeps over the rows.
 
 #include "compiler/reference/reference_evaluator.h"
 
 #include <algorithm>
+#include <map>
 
 #include "compiler/base/contract.h"
 #include "compiler/base/ground_name.h"
@@ -35,8 +39,8 @@ ReferenceSearch::ReferenceSearch(const TypedModel& model, const ExpandedModel& e
   effects_.assign(expanded.effects().size(), 0);
   if (effects_.empty()) return;
   for (;;) {
-    const auto most = least_effects(effects_);
-    auto least = least_effects(most);
+    const auto most = least_effects(values, effects_);
+    auto least = least_effects(values, most);
     const bool settled = least == effects_;
     effects_ = std::move(least);
     if (!settled) continue;
@@ -45,7 +49,8 @@ ReferenceSearch::ReferenceSearch(const TypedModel& model, const ExpandedModel& e
   }
 }
 
-ReferenceSearch::Values ReferenceSearch::least_effects(const Values& absent) const {
+ReferenceSearch::Values ReferenceSearch::least_effects(const Values& values,
+                                                       const Values& absent) const {
   Values found(absent.size(), 0);
   for (bool grown = true; grown;) {
     grown = false;
@@ -54,7 +59,8 @@ ReferenceSearch::Values ReferenceSearch::least_effects(const Values& absent) con
       if (found[i] != 0 || effect.needed > last_) continue;
       for (const auto& row : expanded_.rows(effect.fluent, effect.time)) {
         if (row.kind != effect.kind || row.event != effect.event) continue;
-        if (!expanded_.trees().value(row.condition.node, values_, {&found, &absent})) continue;
+        const FormulaTrees::Sides sides{&values, &values_, {&found, &absent}};
+        if (!expanded_.trees().sided_value(row.condition.node, sides)) continue;
         found[i] = 1;
         grown = true;
         break;
@@ -79,6 +85,7 @@ void ReferenceSearch::run(std::size_t limit, std::int64_t max_reasons) {
   }
   for (std::size_t i = 0; i < expanded_.paths().size() && !full(); ++i) check_path(i);
   if (!full()) check_completion(max_reasons);
+  if (!full() && model_.options.founded) check_founded(max_reasons);
 }
 
 ReferenceSearch::Truth ReferenceSearch::value(const ReferenceFormula& formula) const {
@@ -201,6 +208,45 @@ bool ReferenceSearch::has_reason(const ExpandedModel::Completed& completed, Valu
   }
   changed[completed.atom] = 1;
   return found;
+}
+
+/// With several completions an atom needs a derivation from each.
+void ReferenceSearch::check_founded(std::int64_t max_reasons) {
+  const auto& all = expanded_.completed();
+  Values derived = values_, changed = values_;
+  std::map<std::uint32_t, std::vector<std::size_t>> open;  // by atom: its completions
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!is_true(all[i].atom) || expanded_.needed(all[i].atom) > last_) continue;
+    derived[all[i].atom] = 0;
+    open[all[i].atom].push_back(i);
+  }
+  std::int64_t evaluated = 0;
+  for (bool grown = true; grown;) {
+    const auto effects = least_effects(derived, effects_);
+    const FormulaTrees::Sides sides{&changed, &derived, {&effects_, &effects}};
+    const auto gives_reason = [&](std::size_t conjunct) {
+      const auto& formula = expanded_.conjuncts()[conjunct].formula;
+      evaluated += expanded_.conjuncts()[conjunct].size;
+      return formula.needed > last_ || !expanded_.trees().sided_value(formula.node, sides);
+    };
+    grown = std::erase_if(open, [&](const auto& entry) {
+              const auto& [atom, completions] = entry;
+              changed[atom] = 0;
+              const bool found =
+                  std::all_of(completions.begin(), completions.end(), [&](std::size_t i) {
+                    return std::any_of(all[i].reasons.begin(), all[i].reasons.end(), gives_reason);
+                  });
+              changed[atom] = 1;
+              derived[atom] = found ? 1 : 0;
+              return found;
+            }) > 0;
+    if (evaluated <= max_reasons) continue;
+    finished_ = false;
+    return;
+  }
+  for (const auto& [atom, completions] : open) {
+    note({Rule::kFounded, 0, completions.front(), 0, expanded_.timepoint(atom).value_or(0)});
+  }
 }
 
 std::vector<std::uint8_t> atom_values(const ExpandedModel& expanded, const Valuation& valuation) {
@@ -374,10 +420,13 @@ Violation ReferenceEvaluator::describe(const ReferenceFinding& finding,
               dec() + ": since " + std::to_string(path.begin) + " it leads to HoldsAt(" +
                   fluents[path.target] + "," + std::to_string(path.end) + ")"};
     }
-    case Rule::kCompletion: {
+    case Rule::kCompletion:
+    case Rule::kFounded: {
       const auto& completed = expanded_.completed()[finding.index];
       const auto what = "completion of " + expanded_.atom_text(completed.atom);
-      return {model_.completions[completed.completion].source, what, t, what + ": no reason"};
+      const auto* why =
+          finding.rule == Rule::kFounded ? ": only reasons in a circle" : ": no reason";
+      return {model_.completions[completed.completion].source, what, t, what + why};
     }
     case Rule::kCircularEffects: {
       const std::string what = "effects depend on their own absence";

@@ -23,6 +23,7 @@ struct ReferenceFinding {
     kEffect,           // DEC9 to DEC12; index: row of (fluent, timepoint)
     kTrajectory,       // DEC3 or DEC4; index: path
     kCompletion,       // index: completed atom
+    kFounded,          // its reasons go in a circle; index: completed atom
     kCircularEffects   // some effect depends on its own absence
   };
   Rule rule = Rule::kAxiom;
@@ -59,9 +60,9 @@ class ReferenceSearch {
   }
   bool is_true(std::uint32_t atom) const { return values_[atom] != 0; }
   Truth value(const ReferenceFormula& formula) const;
-  /// The least effects of the rows, where conditions read the effects that they deny from `absent`:
-  /// rows are added until nothing new follows.
-  Values least_effects(const Values& absent) const;
+  /// The least effects of the rows, where conditions read the effects that they deny from `absent`,
+  /// and atoms that count for them from `values`: rows are added until nothing new follows.
+  Values least_effects(const Values& values, const Values& absent) const;
   /// Does an event change the fluent this way at t?
   Truth changed(EffectKind kind, std::uint32_t fluent, std::int64_t t) const;
   Truth fires(const ExpandedModel::EffectRow& row, std::int64_t t) const;
@@ -73,6 +74,7 @@ class ReferenceSearch {
   void check_path(std::size_t index);
   void check_completion(std::int64_t max_reasons);
   bool has_reason(const ExpandedModel::Completed& completed, Values& changed) const;
+  void check_founded(std::int64_t max_reasons);
 
   const TypedModel& model_;
   const ExpandedModel& expanded_;
@@ -122,10 +124,12 @@ struct ReferenceLimits {
 ///
 /// Completion is pointwise circumscription: a true atom of a completed predicate has a reason if
 /// some axiom of the label becomes false where that atom alone does, with all effects as they are.
-/// A definition over effects is no reason.
+/// A definition over effects is no reason. With `option founded on` a reason only counts once the
+/// completed atoms that it asks for, itself or by way of effects, have one.
 ///
 /// Cost: the instances of the model for construction; per check the atoms of these instances, and
-/// for every true completed atom those of the instances that mention it.
+/// for every true completed atom those of the instances that mention it, once for each round of
+/// derivations where they are founded.
 class ReferenceEvaluator {
  public:
   /// By atom: is it true? Numbered as ExpandedModel says; `atom_count()` of them.

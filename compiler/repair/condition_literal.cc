@@ -18,8 +18,9 @@ Arguments choices(const TypedModel& model, SortId sort,
     if (model.sorts_overlap(variable.sort, sort)) out.push_back({Kind::kVariable, variable.name});
   }
   out.push_back({Kind::kSome, model.sorts[sort].name});
-  if (!constants) return out;
-  for (auto& name : constants_of(model, sort)) out.push_back({Kind::kConstant, std::move(name)});
+  if (constants) {
+    for (auto& name : constants_of(model, sort)) out.push_back({Kind::kConstant, std::move(name)});
+  }
   if (!is_number_sort(model, sort)) return out;
   for (const auto& variable : variables) {
     if (!model.sorts_overlap(variable.sort, sort)) continue;
@@ -58,8 +59,9 @@ void add_both(ConditionLiteral literal, std::vector<ConditionLiteral>& out) {
 
 void add_symbol(const TypedModel& model, const Symbol& symbol, std::vector<SortId> sorts,
                 const std::vector<SortedVariable>& variables, std::size_t most_each,
-                std::vector<ConditionLiteral>& out) {
+                bool may_have_constants, std::vector<ConditionLiteral>& out) {
   for (const bool constants : {true, false}) {
+    if (constants && !may_have_constants) continue;
     std::vector<Arguments> places;
     for (const auto sort : sorts) places.push_back(choices(model, sort, variables, constants));
     if (product_size(places) > most_each) continue;
@@ -93,7 +95,7 @@ void add_equation(LiteralArgument left, LiteralArgument right, bool less,
 /// Comparisons of a number with other variables, their neighbours and the values of functions.
 void add_number_comparisons(const TypedModel& model, const std::vector<SortedVariable>& variables,
                             std::size_t i, const std::vector<std::string>& functions,
-                            std::vector<ConditionLiteral>& out) {
+                            bool constants, std::vector<ConditionLiteral>& out) {
   const LiteralArgument left{Kind::kVariable, variables[i].name};
   for (const auto& term : functions) add_equation(left, {Kind::kTerm, term}, true, out);
   for (std::size_t j = 0; j < variables.size(); ++j) {
@@ -106,6 +108,7 @@ void add_number_comparisons(const TypedModel& model, const std::vector<SortedVar
       }
     }
   }
+  if (!constants) return;
   const auto numerals = numerals_of(model, variables[i].sort);
   for (std::size_t k = 1; k < numerals.size(); ++k) {
     add_equation(left, {Kind::kConstant, numerals[k]}, true, out);
@@ -113,7 +116,8 @@ void add_number_comparisons(const TypedModel& model, const std::vector<SortedVar
 }
 
 void add_equations(const TypedModel& model, const std::vector<SortedVariable>& variables,
-                   std::size_t most_each, std::vector<ConditionLiteral>& out) {
+                   std::size_t most_each, bool may_have_constants,
+                   std::vector<ConditionLiteral>& out) {
   for (std::size_t i = 0; i < variables.size(); ++i) {
     const LiteralArgument left{Kind::kVariable, variables[i].name};
     for (std::size_t j = i + 1; j < variables.size(); ++j) {
@@ -122,13 +126,13 @@ void add_equations(const TypedModel& model, const std::vector<SortedVariable>& v
     }
     const auto constants = constants_of(model, variables[i].sort);
     for (const auto& name : constants) {
-      if (constants.size() > most_each) break;
+      if (!may_have_constants || constants.size() > most_each) break;
       add_equation(left, {Kind::kConstant, name}, false, out);
     }
     const auto functions = function_terms(model, variables[i].sort, variables);
     for (const auto& term : functions) add_equation(left, {Kind::kTerm, term}, false, out);
     if (is_number_sort(model, variables[i].sort)) {
-      add_number_comparisons(model, variables, i, functions, out);
+      add_number_comparisons(model, variables, i, functions, may_have_constants, out);
     }
   }
 }
@@ -299,7 +303,7 @@ std::vector<std::string> constants_of(const TypedModel& model, SortId sort) {
 
 std::vector<ConditionLiteral> condition_literals(const TypedModel& model,
                                                  const std::vector<SortedVariable>& variables,
-                                                 std::size_t most_each) {
+                                                 std::size_t most_each, bool constants) {
   std::vector<ConditionLiteral> out;
   for (const auto& symbol : model.symbols) {
     const bool is_fluent = symbol.kind == SymbolKind::kFluent;
@@ -310,9 +314,9 @@ std::vector<ConditionLiteral> condition_literals(const TypedModel& model,
     };
     // Predicates of the calculus, and those about timepoints, are never missing conditions.
     if (uses(model.core.time) || uses(model.core.event) || uses(model.core.fluent)) continue;
-    add_symbol(model, symbol, symbol.arguments, variables, most_each, out);
+    add_symbol(model, symbol, symbol.arguments, variables, most_each, constants, out);
   }
-  add_equations(model, variables, most_each, out);
+  add_equations(model, variables, most_each, constants, out);
   return out;
 }
 

@@ -77,9 +77,10 @@ std::vector<std::string> constants_of(const TypedModel& model, SortId sort);
 /// Every literal over the model's fluents and predicates with these variables, constants, and
 /// places that are left open; equations between variables, and between one and a constant or the
 /// value of a function; of numbers also `x<y` and `x=y+1`. Symbols with more than `most_each`
-/// literals have none with constants.
+/// literals have none with constants. This is the one language of conditions of `repair` and
+/// `learn`. `constants`: false leaves them out everywhere.
 std::vector<ConditionLiteral> condition_literals(const TypedModel& model,
                                                  const std::vector<SortedVariable>& variables,
-                                                 std::size_t most_each);
+                                                 std::size_t most_each, bool constants = true);
 
 }  // namespace parallax::compiler

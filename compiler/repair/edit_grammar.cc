@@ -233,6 +233,7 @@ std::vector<Edit> start_edits(const ModelAst& model, const TypedModel& typed,
   add_start_edits(subject, out);
   add_state_edits(subject, out);
   add_start_facts(subject, out);
+  add_missing_definitions(subject, out);
   return out;
 }
 

@@ -30,7 +30,7 @@ struct Edit {
     kDelay,          // the effect comes later, or at once: `sentences` instead of the axiom
     kOpenEvent,      // the effects `nodes`, one of each axiom, become Releases
     kRewrite,        // a formula about states becomes `text`; of its file `change` is made
-    kAddFact,        // `text`, a fact of the start, is added: `change`
+    kAddFact,        // `text`, a fact of the start or a definition, is added: `change`
   };
   /// `[variables] condition -> effect.`
   struct Sentence {
@@ -52,7 +52,7 @@ struct Edit {
   /// kAddEffect, kAddTrigger: conditions that it has in any case
   std::vector<ConditionLiteral> given;
   /// kAddEffect of several effects: "ends `F` and begins `G`"; kRewrite: "without `F`";
-  /// kDelay: empty where the effect comes later
+  /// kDelay: empty where the effect comes later; kAddFact: empty for a fact
   std::string words;
   std::vector<Sentence> sentences;  // kDelay
   bool names_constants = false;     // kAddEffect: in the place of variables
@@ -107,6 +107,8 @@ struct EditScope {
   bool wide = false;
   /// Only conditions that are disjunctions of two: `!Outside(spot) | DoorOpen()`.
   bool alternatives = false;
+  /// States that were seen, for definitions that are missing.
+  std::vector<std::map<std::string, bool>> states = {};
 };
 
 /// The arguments of a ground atom: {"milk1", "pTable"} for "ItemAt(milk1,pTable)".
@@ -123,5 +125,10 @@ std::vector<Edit> edits_in_scope(const ModelAst& model, const TypedModel& typed,
 /// timepoint 0 after it. In a fixed order.
 std::vector<Edit> start_edits(const ModelAst& model, const TypedModel& typed,
                               const std::vector<AxiomForm>& forms, const EditScope& scope);
+
+/// Fluents without inertia, by symbol, that no equivalence of the model defines: it may leave them
+/// open.
+std::set<std::string> undefined_fluents(const ModelAst& model, const TypedModel& typed,
+                                        const std::vector<AxiomForm>& forms);
 
 }  // namespace parallax::compiler

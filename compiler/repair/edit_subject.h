@@ -45,6 +45,8 @@ void add_state_edits(const EditSubject& subject, std::vector<Edit>& edits);
 void add_start_edits(const EditSubject& subject, std::vector<Edit>& edits);
 /// Appends facts of timepoint 0 that are missing, for fluents that differed there.
 void add_start_facts(const EditSubject& subject, std::vector<Edit>& edits);
+/// Appends definitions of fluents that lack one (undefined_fluents), true of all states seen.
+void add_missing_definitions(const EditSubject& subject, std::vector<Edit>& edits);
 /// Appends effects on fluents with a number, `HoldsAt(F(count1),time) & count2=count1+1 ->
 /// Initiates(E,F(count2),time)`, where a step changed the number.
 void add_counter_effects(const EditSubject& subject, std::vector<Edit>& edits);

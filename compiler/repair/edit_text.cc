@@ -368,7 +368,9 @@ std::string EditText::words(const std::vector<std::size_t>& chosen) const {
         out.push_back(fmt::format("{} {}", axiom(), edit.words));
         break;
       case Edit::Kind::kAddFact:
-        out.push_back(fmt::format("a fact of the start is missing: `{}`", edit.text));
+        out.push_back(fmt::format(
+            "{}: `{}`", edit.words.empty() ? "a fact of the start is missing" : edit.words,
+            edit.text));
         break;
       case Edit::Kind::kDelay: {
         const auto& first = edit.sentences.front();

@@ -146,6 +146,16 @@ std::string with_names(const std::string& term, const std::map<std::string, std:
   return out;
 }
 
+std::optional<SteppedVariable> stepped_variable(const std::string& term) {
+  const auto end = static_cast<std::size_t>(std::find_if_not(term.begin(), term.end(), is_of_name) -
+                                            term.begin());
+  if (end == 0 || read_number(std::string_view(term).substr(0, end))) return std::nullopt;
+  const auto step = std::string_view(term).substr(end);
+  if (step.empty()) return SteppedVariable{term, 0};
+  if (step != "+1" && step != "-1") return std::nullopt;
+  return SteppedVariable{term.substr(0, end), step == "+1" ? 1 : -1};
+}
+
 std::optional<std::int64_t> number_of(const std::string& term,
                                       const std::map<std::string, std::string>& values) {
   const auto sign = term.find_first_of("+-", 1);

@@ -19,6 +19,12 @@ std::vector<std::string> numerals_of(const TypedModel& model, SortId sort);
 
 /// The term with other names for its variables: "count-1" with `count` named `count2`.
 std::string with_names(const std::string& term, const std::map<std::string, std::string>& names);
+/// `x`, `x+1`, `x-1`: a variable and what is added to it. None: another term.
+struct SteppedVariable {
+  std::string variable;
+  int by = 0;
+};
+std::optional<SteppedVariable> stepped_variable(const std::string& term);
 /// The value of a numeral, a variable, or of `x+1` and `x-1`. None: it is not known.
 std::optional<std::int64_t> number_of(const std::string& term,
                                       const std::map<std::string, std::string>& values);

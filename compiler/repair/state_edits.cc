@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::size_t kMostAdded = 40;  // literals of a symbol as a further condition
 constexpr int kDropConstraint = 1;
+constexpr int kOtherSign = 3;       // `|` for `&`
 constexpr int kDropDefinition = 6;  // a definition is rather wrong than superfluous
 
 class StateFormulaEdits {
@@ -172,6 +173,7 @@ class StateFormulaEdits {
     }
     if (node.kind == NodeKind::kBinary && (node.op == Operator::kAnd || node.op == Operator::kOr)) {
       drop_parts(node);
+      exchange_signs(node);
     }
     for (std::uint32_t i = 0; i < node.child_count; ++i) edit_parts(ast_.child(node, i), variables);
   }
@@ -200,6 +202,37 @@ class StateFormulaEdits {
                             : TextExtent{extent(ast_.child(node, i - 1)).end, own.end};
       rewrite(gone, "", 2, "without `" + text_of(own) + "`");
     }
+  }
+
+  /// `A & B` becomes `A | B`, and the reverse: one sign of a formula, or all of several. A part
+  /// that has the other sign is as it was, with or without parentheses.
+  void exchange_signs(const Node& node) {
+    const std::string other = node.op == Operator::kAnd ? "|" : "&";
+    const std::string place = " in the place of `" + std::string(spelling(node.op)) + "`";
+    const bool several = node.child_count > 2;
+    const auto begin = extent(ast_.child(node, 0)).begin;
+    auto at = begin;
+    std::string all;
+    for (std::uint32_t i = 0; i + 1 < node.child_count; ++i) {
+      const auto left = extent(ast_.child(node, i));
+      const auto sign = sign_behind(left.end, spelling(node.op).front());
+      rewrite({sign, sign + 1}, other, kOtherSign + (several ? 1 : 0),
+              "with `" + other + "`" + place + " behind `" + text_of(left) + "`");
+      all += text_of({at, sign}) + other;
+      at = sign + 1;
+    }
+    const auto end = extent(ast_.child(node, node.child_count - 1)).end;
+    if (several) {
+      rewrite({begin, end}, all + text_of({at, end}), kOtherSign, "with `" + other + "`" + place);
+    }
+  }
+
+  /// The place of the sign. A comment in front of it may have the same character.
+  std::uint32_t sign_behind(std::uint32_t at, char sign) const {
+    for (bool comment = false; comment || text_[at] != sign; ++at) {
+      comment = (comment || text_[at] == ';') && text_[at] != '\n';
+    }
+    return at;
   }
 
   /// `whole` is the atom, or its negation.

@@ -103,6 +103,7 @@ class ShapeReader {
         case FormulaKind::kTrue:
         case FormulaKind::kFalse:
         case FormulaKind::kCompare:
+        case FormulaKind::kAggregate:  // it has no effects in it
         case FormulaKind::kTemporal:
           break;
         case FormulaKind::kAtom:
@@ -210,6 +211,7 @@ class ShapeReader {
         case FormulaKind::kOr:
         case FormulaKind::kIff:
         case FormulaKind::kExists:
+        case FormulaKind::kAggregate:
         case FormulaKind::kTemporal:
           add_conjunct(task, root);
           break;

@@ -117,6 +117,8 @@ class ShapeMaker {
     switch (node.kind) {
       case NodeKind::kName:
       case NodeKind::kNumber:
+      case NodeKind::kCount:
+      case NodeKind::kSum:
         return std::nullopt;
       case NodeKind::kApply:
         made.node = id;
@@ -341,6 +343,8 @@ class ShapeMatcher {
       case NodeKind::kUnary:
       case NodeKind::kForall:
       case NodeKind::kExists:
+      case NodeKind::kCount:
+      case NodeKind::kSum:
         return false;
     }
     return false;

@@ -307,6 +307,10 @@ Elaborator::Value Elaborator::apply(const Frame& frame, const Node& node) {
        {core.initiates, core.terminates, core.releases, core.trajectory, core.anti_trajectory}) {
     if (effect != frame.symbol) continue;
     mentions_effects_ = true;
+    if (is_inside_aggregate()) {
+      sink_.error(codes::kInsideAggregate, source(node), symbol.name);
+      return failure();
+    }
     if (!options_.allow_effects) {
       sink_.error(codes::kEffectNotAllowed, source(node), symbol.name);
       return failure();
@@ -405,6 +409,36 @@ Elaborator::Value Elaborator::comparison(const Node& node, TermId left, TermId r
   formula.terms = {left, right};
   formula.source = source(node);
   return add(std::move(formula));
+}
+
+/// Without the number that it is compared with, which the comparison adds.
+Elaborator::Value Elaborator::aggregate(const Frame& frame, const Node& node) {
+  TypedFormula formula;
+  formula.kind = FormulaKind::kAggregate;
+  formula.variables = frame.variables;
+  formula.children = {TypedFormulaId(values_.back().id)};
+  if (node.kind == NodeKind::kSum) {
+    const auto weight = TermId(values_[frame.values].id);
+    if (!is_integer(weight)) {
+      sink_.error(codes::kNotAnInteger, model_.terms[weight].source, "sum", quoted(weight),
+                  sort_name(model_, weight));
+      return failure();
+    }
+    formula.terms = {weight};
+  }
+  formula.source = source(node);
+  return add(std::move(formula));
+}
+
+Elaborator::Value Elaborator::aggregate_comparison(const Node& node, bool turned,
+                                                   const Value& counted, TermId number) {
+  if (!check_integer(node.op, number)) return failure();
+  const auto op = *compare_op(node.op);
+  auto& formula = model_.formulas[TypedFormulaId(counted.id)];
+  formula.compare = turned ? mirrored(op) : op;
+  formula.terms.insert(formula.terms.begin(), number);
+  formula.source = source(node);
+  return counted;
 }
 
 }  // namespace parallax::compiler

@@ -103,7 +103,8 @@ void Elaborator::advance() {
     } else if (node.kind == NodeKind::kBinary && is_comparison(node.op)) {
       expected = sort_beside(node, index);
     }
-    visit(ast_->child(node, index), top.child_position, expected);
+    const bool weight = node.kind == NodeKind::kSum && index == node.bound_count();
+    visit(ast_->child(node, index), weight ? Position::kTerm : top.child_position, expected);
     return;
   }
   Frame frame = std::move(top);
@@ -145,6 +146,9 @@ void Elaborator::enter(Frame& frame, const Node& node) {
     case NodeKind::kForall:
     case NodeKind::kExists:
       return enter_quantifier(frame, node);
+    case NodeKind::kCount:
+    case NodeKind::kSum:
+      return enter_aggregate(frame, node);
   }
 }
 
@@ -189,8 +193,14 @@ void Elaborator::enter_binary(Frame& frame, const Node& node) {
   }
 }
 
-/// Below a temporal operator `time` moves by itself.
+/// Below a temporal operator `time` moves by itself. Aggregates have no such operators in them.
 void Elaborator::check_time_is_free(Frame& frame, const Node& node) {
+  if (is_inside_aggregate()) {
+    frame.failed = true;
+    frame.next_child = node.child_count;
+    sink_.error(codes::kInsideAggregate, source(node), spelling(node.op));
+    return;
+  }
   for (const auto& outer : frames_) {
     for (std::size_t i = 0; i < outer.variables.size(); ++i) {
       const auto& variable = model_.variables[outer.variables[i]];
@@ -253,9 +263,34 @@ void Elaborator::enter_quantifier(Frame& frame, const Node& node) {
     sink_.error(codes::kExpectedTerm, source(node), "formula", quoted(node));
     return;
   }
-  const auto variable_count = node.child_count - 1;
-  frame.next_child = variable_count;  // only the body is visited
-  for (std::uint32_t i = 0; i < variable_count; ++i) {
+  bind_variables(frame, node);
+}
+
+/// `count{x: F}` and `sum{x: W: F}` stand on one side of a comparison.
+void Elaborator::enter_aggregate(Frame& frame, const Node& node) {
+  frame.child_position = Position::kFormula;
+  const Node* above = frames_.empty() ? nullptr : &(*ast_)[frames_.back().node];
+  const bool compared =
+      above != nullptr && above->kind == NodeKind::kBinary && is_comparison(above->op) &&
+      !(is_aggregate((*ast_)[ast_->child(*above, 0)].kind) && frames_.back().next_child == 2);
+  if (!compared) {
+    frame.failed = true;
+    frame.next_child = node.child_count;
+    sink_.error(codes::kAggregatePlace, source(node), ast_->name(node));
+    return;
+  }
+  bind_variables(frame, node);
+}
+
+bool Elaborator::is_inside_aggregate() const {
+  return std::any_of(frames_.begin(), frames_.end(),
+                     [&](const Frame& frame) { return is_aggregate((*ast_)[frame.node].kind); });
+}
+
+/// Binds the variables of a quantifier or aggregate; what stands behind them is visited.
+void Elaborator::bind_variables(Frame& frame, const Node& node) {
+  frame.next_child = node.bound_count();
+  for (std::uint32_t i = 0; i < node.bound_count(); ++i) {
     const Node& variable = (*ast_)[ast_->child(node, i)];
     const auto name = ast_->name(variable);
     const auto sort_name = sort_of_variable(name);
@@ -340,11 +375,22 @@ Elaborator::Value Elaborator::leave(const Frame& frame, const Node& node) {
       return check_integer(node.op, term(0)) ? values_[frame.values] : failure();
     case NodeKind::kBinary:
       if (is_connective(node.op)) return connective(frame, node);
-      if (is_comparison(node.op)) return comparison(node, term(0), term(1));
+      if (is_comparison(node.op)) {
+        for (const bool turned : {false, true}) {
+          const Node& side = (*ast_)[ast_->child(node, turned ? 1 : 0)];
+          if (!is_aggregate(side.kind)) continue;
+          return aggregate_comparison(node, turned, values_[frame.values + (turned ? 1 : 0)],
+                                      term(turned ? 0 : 1));
+        }
+        return comparison(node, term(0), term(1));
+      }
       return arithmetic(node, term(0), term(1));
     case NodeKind::kForall:
     case NodeKind::kExists:
       return connective(frame, node);
+    case NodeKind::kCount:
+    case NodeKind::kSum:
+      return aggregate(frame, node);
   }
   return failure();
 }

@@ -86,6 +86,9 @@ class Elaborator {
   void check_time_is_free(Frame& frame, const Node& node);
   void enter_apply(Frame& frame, const Node& node);
   void enter_quantifier(Frame& frame, const Node& node);
+  void enter_aggregate(Frame& frame, const Node& node);
+  void bind_variables(Frame& frame, const Node& node);
+  bool is_inside_aggregate() const;
   void advance();
   Value leave(const Frame& frame, const Node& node);
 
@@ -100,6 +103,8 @@ class Elaborator {
   Value arithmetic(const Node& node, TermId left, TermId right);
   Value negation_of_term(const Node& node, TermId operand);
   Value comparison(const Node& node, TermId left, TermId right);
+  Value aggregate(const Frame& frame, const Node& node);
+  Value aggregate_comparison(const Node& node, bool turned, const Value& counted, TermId number);
   Value fluent_atom(const Frame& frame, const Node& node, std::vector<TermId> arguments);
   bool check_argument(const Symbol& symbol, std::size_t position, TermId term);
   bool check_integer(Operator op, TermId term);

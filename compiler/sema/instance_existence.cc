@@ -34,9 +34,10 @@ class LackSearch {
       todo.pop_back();
       todo.insert(todo.end(), formula.children.begin(), formula.children.end());
       if (formula.kind == FormulaKind::kAtom && atom(formula)) return true;
-      if (formula.kind == FormulaKind::kCompare &&
-          std::any_of(formula.terms.begin(), formula.terms.end(),
-                      [&](TermId term) { return parts(term); })) {
+      const bool compares =
+          formula.kind == FormulaKind::kCompare || formula.kind == FormulaKind::kAggregate;
+      if (compares && std::any_of(formula.terms.begin(), formula.terms.end(),
+                                  [&](TermId term) { return parts(term); })) {
         return true;
       }
     }

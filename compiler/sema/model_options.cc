@@ -1,4 +1,5 @@
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,8 +23,9 @@ struct OptionInfo {
   bool DeclaredOptions::*flag;  // null: accepted, without meaning for us
 };
 
-constexpr std::array<OptionInfo, 12> kOptions = {{
+constexpr std::array<OptionInfo, 13> kOptions = {{
     {"encoding", Values::kEncoding, nullptr},
+    {"founded", Values::kOnOff, nullptr},
     {"trajectory", Values::kOnOff, &DeclaredOptions::trajectory},
     {"manualrelease", Values::kOnOff, &DeclaredOptions::manual_release},
     {"renaming", Values::kOnOff, &DeclaredOptions::renaming},
@@ -72,6 +74,9 @@ void apply_option(const Ast& ast, const Statement& statement, DeclaredOptions& o
       return;
     }
     if (option.flag != nullptr) options.*option.flag = value == "on";
+    if (name == "founded") {
+      options.founded = value == "on" ? std::optional(ast.source(statement.value)) : std::nullopt;
+    }
     if (option.values == Values::kEncoding) options.encoding = value == "3" ? 3 : 2;
     return;
   }

@@ -89,6 +89,8 @@ class TreeWriter {
         return quantifier(what, "[", "] ", inside);
       case FormulaKind::kExists:
         return quantifier(what, "{", "} ", inside);
+      case FormulaKind::kAggregate:
+        return aggregate(what, inside);
       case FormulaKind::kTemporal:
         return;  // no axiom has one
     }
@@ -99,6 +101,22 @@ class TreeWriter {
     term(what.terms[0], true);
     text(kCompareSigns.of(what.compare));
     term(what.terms[1], true);
+    if (inside) text(")");
+  }
+
+  void aggregate(const TypedFormula& what, bool inside) {
+    if (inside) text("(");
+    text(what.terms.size() == 1 ? "count{" : "sum{");
+    variables(what.variables);
+    text(": ");
+    if (what.terms.size() == 2) {
+      term(what.terms[1], false);
+      text(": ");
+    }
+    formula(what.children[0], false);
+    text("}");
+    text(kCompareSigns.of(what.compare));
+    term(what.terms[0], true);
     if (inside) text(")");
   }
 
@@ -206,6 +224,7 @@ class ModelWriter {
     }
     if (model_.options.trajectory) line("option trajectory on");
     if (!model_.options.renaming) line("option renaming off");
+    if (model_.options.founded) line("option founded on");
   }
 
   void declare(const Sort& sort) {

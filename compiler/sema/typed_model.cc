@@ -36,6 +36,41 @@ std::vector<SortId> ancestors(const TypedModel& model, SortId sort) {
 
 }  // namespace
 
+CompareOp mirrored(CompareOp op) {
+  switch (op) {
+    case CompareOp::kEqual:
+    case CompareOp::kNotEqual:
+      return op;
+    case CompareOp::kLess:
+      return CompareOp::kGreater;
+    case CompareOp::kLessEqual:
+      return CompareOp::kGreaterEqual;
+    case CompareOp::kGreater:
+      return CompareOp::kLess;
+    case CompareOp::kGreaterEqual:
+      return CompareOp::kLessEqual;
+  }
+  return op;
+}
+
+bool compares(std::int64_t left, CompareOp op, std::int64_t right) {
+  switch (op) {
+    case CompareOp::kEqual:
+      return left == right;
+    case CompareOp::kNotEqual:
+      return left != right;
+    case CompareOp::kLess:
+      return left < right;
+    case CompareOp::kLessEqual:
+      return left <= right;
+    case CompareOp::kGreater:
+      return left > right;
+    case CompareOp::kGreaterEqual:
+      return left >= right;
+  }
+  return false;
+}
+
 std::optional<SortId> TypedModel::find_sort(std::string_view name) const {
   return find_in(sorts, sort_index, name);
 }

@@ -151,7 +151,8 @@ enum class FormulaKind : std::uint8_t {
   kIff,
   kForall,
   kExists,
-  kTemporal  // in properties and state constraints only
+  kAggregate,  // a number of instances, or the sum of their weights, compared with a number
+  kTemporal    // in properties and state constraints only
 };
 enum class CompareOp : std::uint8_t {
   kEqual,
@@ -161,6 +162,10 @@ enum class CompareOp : std::uint8_t {
   kGreater,
   kGreaterEqual
 };
+
+/// The comparison that says the same with its sides exchanged: `<` for `>`.
+CompareOp mirrored(CompareOp op);
+bool compares(std::int64_t left, CompareOp op, std::int64_t right);
 
 /// In the order of their Operators.
 enum class TemporalOp : std::uint8_t {
@@ -179,11 +184,17 @@ struct TypedFormula {
   FormulaKind kind = FormulaKind::kTrue;
   TemporalOp temporal = TemporalOp::kAlways;  // kTemporal
   SymbolId predicate;                         // kAtom
-  CompareOp compare = CompareOp::kEqual;      // kCompare
-  std::vector<TermId> terms;                  // kAtom: arguments; kCompare: two
-  std::vector<TypedFormulaId> children;       // connectives and quantifiers
-  std::vector<VariableId> variables;          // kForall, kExists
+  CompareOp compare = CompareOp::kEqual;      // kCompare, kAggregate (the number is on its right)
+  /// kAtom: arguments; kCompare: two; kAggregate: the number, and for a sum the weight
+  std::vector<TermId> terms;
+  std::vector<TypedFormulaId> children;  // connectives, quantifiers, aggregates
+  std::vector<VariableId> variables;     // quantifiers, aggregates
   base::SourceRange source;
+
+  /// May the whole become true, and false, where a part becomes true?
+  bool mixes_polarity() const {
+    return kind == FormulaKind::kIff || kind == FormulaKind::kAggregate;
+  }
 };
 
 /// A formula that is asserted as it stands (observations, constraints, preconditions, triggers).
@@ -257,6 +268,8 @@ struct DeclaredOptions {
   bool trajectory = false;
   bool manual_release = false;  // already applied to every fluent symbol
   bool renaming = true;
+  /// `option founded on`, where it stands: completed atoms need reasons that do not go in circles.
+  std::optional<base::SourceRange> founded;
   // Only the printed form of traces:
   bool time_diff = true;
   bool model_diff = false;

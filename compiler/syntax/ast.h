@@ -27,7 +27,15 @@ enum class NodeKind : std::uint8_t {
   kBinary,  // two children; any number from two on for `&` and `|`
   kForall,  // the variables (kName), then the body
   kExists,  // the same
+  kCount,   // `count{x: F}`: the same
+  kSum,     // `sum{x: W: F}`: the variables, the weight, the body
 };
+constexpr bool is_quantifier(NodeKind kind) {
+  return kind == NodeKind::kForall || kind == NodeKind::kExists;
+}
+constexpr bool is_aggregate(NodeKind kind) {
+  return kind == NodeKind::kCount || kind == NodeKind::kSum;
+}
 
 enum class Operator : std::uint8_t {
   kImplies,
@@ -90,9 +98,15 @@ struct Node {
   Operator op = Operator::kAnd;  // kUnary, kBinary
   std::uint32_t begin = 0;       // byte range in the file
   std::uint32_t end = 0;
-  std::uint32_t name_length = 0;  // kName, kNumber, kApply: the name starts at `begin`
+  std::uint32_t name_length = 0;  // of the name at `begin`, where the kind has one
   std::uint32_t first_child = 0;
   std::uint32_t child_count = 0;
+
+  /// How many of the first children are variables that the node binds.
+  std::uint32_t bound_count() const {
+    if (kind == NodeKind::kSum) return child_count - 2;
+    return is_quantifier(kind) || kind == NodeKind::kCount ? child_count - 1 : 0;
+  }
 };
 
 enum class StatementKind : std::uint8_t {
@@ -160,7 +174,7 @@ class Ast {
   NodeId child(const Node& node, std::uint32_t position) const {
     return children_[node.first_child + position];
   }
-  /// The name of kName and kApply, the digits of kNumber.
+  /// The name of kName and kApply, the digits of kNumber, the word of an aggregate.
   std::string_view name(const Node& node) const {
     return text_.substr(node.begin, node.name_length);
   }

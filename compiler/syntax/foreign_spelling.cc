@@ -16,7 +16,7 @@ constexpr std::string_view kImplication = "implication", kEquivalence = "equival
                            kNegation = "negation", kComment = "the beginning of a comment";
 
 // Longest match first.
-constexpr std::array<ForeignSpelling, 24> kSigns = {{
+constexpr std::array<ForeignSpelling, 26> kSigns = {{
     {"<=>", kEquivalence, "<->", Kind::kOperator, Operator::kIff},
     {"==>", kImplication, "->", Kind::kOperator, Operator::kImplies},
     {"-->", kImplication, "->", Kind::kOperator, Operator::kImplies},
@@ -40,6 +40,8 @@ constexpr std::array<ForeignSpelling, 24> kSigns = {{
     {"//", kComment, ";", Kind::kComment},
     {"\xC2\xAC", kNegation, "!", Kind::kPrefix, Operator::kNot},
     {"~", kNegation, "!", Kind::kPrefix, Operator::kNot},
+    {"#count", "a number of instances", "count", Kind::kComment},
+    {"#sum", "a sum", "sum", Kind::kComment},
     {"#", kComment, ";", Kind::kComment},
 }};
 

@@ -139,14 +139,27 @@ class Layout {
     for (auto i = range.begin; i < range.end; ++i) {
       if (i != range.begin && tokens_[i].space_before) text(" ");
       const auto partner = tokens_[i].partner;
-      const bool group = tokens_[i].token.kind == TokenKind::kOpenParen && partner > i + 1;
+      const bool group = opens(tokens_[i].token.kind) && !tokens_[i].quantifier && partner > i + 1;
       const std::size_t rest = width({i, range.end}) + tail;
       emit(i, i + 1);
       if (!group || column_ + rest <= kLayoutWidth) continue;
       const auto inner = column_ <= kDeepestIndent ? column_ : indent + kStep;
-      place({i + 1, partner}, inner, width({partner, range.end}) + tail, depth + 1);
+      const auto body = i + 1 + emit_variables({i + 1, partner});
+      place({body, partner}, inner, width({partner, range.end}) + tail, depth + 1);
       i = partner - 1;
     }
+  }
+
+  /// Writes what stands before the body of an aggregate, up to its last colon; how many tokens.
+  std::size_t emit_variables(Range range) {
+    auto end = range.begin;
+    for (auto i = range.begin; i < range.end; ++i) {
+      if (opens(tokens_[i].token.kind)) i = tokens_[i].partner;
+      if (tokens_[i].token.kind == TokenKind::kColon) end = i + 1;
+    }
+    emit(range.begin, end);
+    if (end != range.begin) text(" ");
+    return end - range.begin;
   }
 
   int strength(std::size_t at) const {
@@ -198,11 +211,12 @@ void prepare(std::vector<LayoutToken>& tokens) {
     auto& token = tokens[i];
     const auto kind = token.token.kind;
     if (opens(kind)) {
-      token.quantifier = kind != TokenKind::kOpenParen;
+      // `count{` is no quantifier: its bracket ends it.
+      token.quantifier = kind != TokenKind::kOpenParen && wants_operand;
       open.push_back(i);
     } else if (closes(kind) && !open.empty()) {
       token.partner = open.back();
-      token.quantifier = kind != TokenKind::kCloseParen;
+      token.quantifier = tokens[open.back()].quantifier;
       tokens[open.back()].partner = i;
       open.pop_back();
     }

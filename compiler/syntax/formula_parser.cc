@@ -36,6 +36,7 @@ FormulaParser::Step FormulaParser::operand() {
       last_ = lexer_.next();
       if (const auto step = foreign_prefix(token)) return *step;
       if (const auto step = temporal_prefix(token)) return *step;
+      if (const auto step = open_aggregate(token)) return *step;
       if (lexer_.peek().kind == TokenKind::kOpenParen) return open_call(token);
       if (is_word_quantifier(token)) return word_quantifier(token);
       leaf(NodeKind::kName, token);
@@ -104,27 +105,80 @@ FormulaParser::Step FormulaParser::quantifier(const Token& open) {
   Entry entry{.kind = Pending::kQuantifier,
               .quantifier = all ? NodeKind::kForall : NodeKind::kExists,
               .token = open};
+  return variables(entry, open, closing) && push(entry) ? Step::kMore : Step::kFailed;
+}
+
+/// The names behind a bracket up to the token that ends them.
+bool FormulaParser::variables(Entry& entry, const Token& open, TokenKind closing) {
   for (;;) {
     const Token name = lexer_.peek();
     if (name.kind != TokenKind::kName) {
-      return fail_here(codes::kExpectedVariable, name);
+      (void)fail_here(codes::kExpectedVariable, name);
+      return false;
     }
     last_ = lexer_.next();
     leaf(NodeKind::kName, name);
     ++entry.count;
     const Token after = lexer_.peek();
     if (after.kind != closing && after.kind != TokenKind::kComma) {
-      sink_
-          .error(codes::kUnclosedBracket, lexer_.range(after), lexer_.text(open),
-                 lexer_.describe(after))
-          .note(lexer_.range(open), "opened here");
-      return Step::kFailed;
+      if (entry.kind == Pending::kAggregate) {
+        (void)fail_here(codes::kAggregateForm, after);
+      } else {
+        sink_
+            .error(codes::kUnclosedBracket, lexer_.range(after), lexer_.text(open),
+                   lexer_.describe(after))
+            .note(lexer_.range(open), "opened here");
+      }
+      return false;
     }
     last_ = lexer_.next();
     if (after.kind == closing) break;
   }
   wants_operand_ = true;
-  return push(entry) ? Step::kMore : Step::kFailed;
+  return true;
+}
+
+/// `count{` and `sum{`; nothing else begins with a name and a brace.
+std::optional<FormulaParser::Step> FormulaParser::open_aggregate(const Token& word) {
+  const auto text = lexer_.text(word);
+  const bool sum = text == "sum";
+  if ((!sum && text != "count") || lexer_.peek().kind != TokenKind::kOpenBrace) {
+    return std::nullopt;
+  }
+  Entry entry{.kind = Pending::kAggregate,
+              .quantifier = sum ? NodeKind::kSum : NodeKind::kCount,
+              .token = word,
+              .base = static_cast<std::uint32_t>(operands_.size())};
+  last_ = lexer_.next();
+  return variables(entry, last_, TokenKind::kColon) && push(entry) ? Step::kMore : Step::kFailed;
+}
+
+/// The colon behind the weight of a sum.
+FormulaParser::Step FormulaParser::weight(const Token& colon) {
+  if (!reduce_to_bracket()) return Step::kFailed;
+  const Entry& top = entries_.back();
+  if (top.quantifier != NodeKind::kSum || operands_.size() != top.base + top.count + 1) {
+    return fail_here(codes::kAggregateForm, colon);
+  }
+  last_ = lexer_.next();
+  wants_operand_ = true;
+  return Step::kMore;
+}
+
+FormulaParser::Step FormulaParser::close_aggregate(const Token& brace) {
+  if (!reduce_to_bracket()) return Step::kFailed;
+  const Entry entry = entries_.back();
+  const auto parts = entry.count + (entry.quantifier == NodeKind::kSum ? 2 : 1);
+  if (operands_.size() != entry.base + parts) {
+    return fail_here(codes::kAggregateForm, brace);
+  }
+  last_ = lexer_.next();
+  entries_.pop_back();
+  brackets_.pop_back();
+  Node node;
+  node.kind = entry.quantifier;
+  node.name_length = entry.token.end - entry.token.begin;
+  return add(node, parts, entry.token.begin, brace.end) ? Step::kMore : Step::kFailed;
 }
 
 bool FormulaParser::is_word_quantifier(const Token& name) const {
@@ -193,9 +247,16 @@ FormulaParser::Step FormulaParser::after_operand(Period period) {
       return comma(token);
     case TokenKind::kCloseParen:
       return close(token);
-    case TokenKind::kCloseBracket:
     case TokenKind::kCloseBrace:
+      if (!brackets_.empty() && brackets_.back() == Pending::kAggregate) {
+        return close_aggregate(token);
+      }
       return fail_here(codes::kUnmatchedBracket, token);
+    case TokenKind::kCloseBracket:
+      return fail_here(codes::kUnmatchedBracket, token);
+    case TokenKind::kColon:
+      if (!brackets_.empty() && brackets_.back() == Pending::kAggregate) return weight(token);
+      return juxtaposed(token, period);
     case TokenKind::kPeriod:
     case TokenKind::kStatementLine:
     case TokenKind::kEnd:
@@ -214,7 +275,6 @@ FormulaParser::Step FormulaParser::after_operand(Period period) {
     case TokenKind::kOpenParen:
     case TokenKind::kOpenBracket:
     case TokenKind::kOpenBrace:
-    case TokenKind::kColon:
       return juxtaposed(token, period);
   }
   return Step::kFailed;
@@ -224,8 +284,7 @@ FormulaParser::Step FormulaParser::binary(const Token& token) {
   const int strength = binding(token.op);
   while (!entries_.empty()) {
     Entry& top = entries_.back();
-    if (top.kind == Pending::kParen || top.kind == Pending::kCall ||
-        top.kind == Pending::kQuantifier) {
+    if (is_bracket(top.kind) || top.kind == Pending::kQuantifier) {
       break;  // a quantifier reaches as far right as possible
     }
     const int above = binding(top.op);
@@ -280,6 +339,7 @@ FormulaParser::Step FormulaParser::close(const Token& token) {
     sink_.error(codes::kUnmatchedBracket, lexer_.range(token), lexer_.text(token));
     return Step::kFailed;
   }
+  if (entries_.back().kind == Pending::kAggregate) return fail_unclosed(token);
   last_ = lexer_.next();
   const Entry entry = entries_.back();
   entries_.pop_back();
@@ -331,7 +391,7 @@ bool FormulaParser::push(const Entry& entry) {
     return false;
   }
   entries_.push_back(entry);
-  if (entry.kind == Pending::kParen || entry.kind == Pending::kCall) {
+  if (is_bracket(entry.kind)) {
     brackets_.push_back(entry.kind);
   }
   return true;
@@ -392,8 +452,7 @@ bool FormulaParser::reduce() {
 }
 
 bool FormulaParser::reduce_to_bracket() {
-  while (!entries_.empty() && entries_.back().kind != Pending::kParen &&
-         entries_.back().kind != Pending::kCall) {
+  while (!entries_.empty() && !is_bracket(entries_.back().kind)) {
     if (!reduce()) return false;
   }
   return true;
@@ -417,11 +476,12 @@ FormulaParser::Step FormulaParser::fail_here(DiagnosticCode code, const Token& f
 FormulaParser::Step FormulaParser::fail_unclosed(const Token& before) {
   const auto& open = entries_.back();
   auto place = lexer_.range(open.token);
-  if (open.kind == Pending::kCall) {
+  if (open.kind != Pending::kParen) {
     place.end = place.begin + 1 + (open.token.end - open.token.begin);
   }
   const auto at = before.kind == TokenKind::kPeriod ? before : last_;
-  sink_.error(codes::kUnclosedBracket, lexer_.range(at), "(", lexer_.describe(before))
+  const auto* bracket = open.kind == Pending::kAggregate ? "{" : "(";
+  sink_.error(codes::kUnclosedBracket, lexer_.range(at), bracket, lexer_.describe(before))
       .note(place, "opened here");
   return Step::kFailed;
 }

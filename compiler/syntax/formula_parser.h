@@ -27,14 +27,16 @@ class FormulaParser {
   std::optional<NodeId> parse(Period period);
 
  private:
-  enum class Pending : std::uint8_t { kBinary, kPrefix, kQuantifier, kParen, kCall };
+  enum class Pending : std::uint8_t { kBinary, kPrefix, kQuantifier, kParen, kCall, kAggregate };
+  /// Does only its bracket end it?
+  static bool is_bracket(Pending kind) { return kind >= Pending::kParen; }
   struct Entry {
     Pending kind = Pending::kBinary;
     Operator op = Operator::kAnd;
-    NodeKind quantifier = NodeKind::kForall;
-    Token token;              // the operator, the bracket or the name before it
-    std::uint32_t count = 0;  // kBinary: operators so far; kCall: commas; kQuantifier: variables
-    std::uint32_t base = 0;   // kCall: operands below it
+    NodeKind quantifier = NodeKind::kForall;  // kQuantifier, kAggregate
+    Token token;                              // the operator, the bracket or the name before it
+    std::uint32_t count = 0;  // kBinary: operators so far; kCall: commas; else: variables
+    std::uint32_t base = 0;   // kCall, kAggregate: operands below it
   };
   struct Operand {
     NodeId node;
@@ -51,6 +53,10 @@ class FormulaParser {
   Step operand();
   Step open_call(const Token& name);
   Step quantifier(const Token& open);
+  bool variables(Entry& entry, const Token& open, TokenKind closing);
+  std::optional<Step> open_aggregate(const Token& word);
+  Step weight(const Token& colon);
+  Step close_aggregate(const Token& brace);
   bool is_word_quantifier(const Token& name) const;
   Step word_quantifier(const Token& word);
   std::optional<Step> foreign_prefix(const Token& word);

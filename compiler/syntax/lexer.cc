@@ -223,8 +223,14 @@ std::uint32_t Lexer::line_end() const {
 }
 
 bool Lexer::skip_foreign_comment() {
-  const auto* foreign = foreign_sign(text_.substr(position_, 3));
+  const auto* foreign = foreign_sign(text_.substr(position_, 6));
   if (foreign == nullptr || foreign->kind != ForeignSpelling::Kind::kComment) return false;
+  if (foreign->text.size() > 2) {  // `#count`: what follows the sign is read
+    const auto word_end = position_ + static_cast<std::uint32_t>(foreign->text.size());
+    report_foreign(*foreign, {file_, position_, word_end}, sink_);
+    ++position_;
+    return true;
+  }
   const auto end = position_ + static_cast<std::uint32_t>(foreign->text.size());
   report_foreign(*foreign, {file_, position_, end}, sink_);
   position_ = line_end();

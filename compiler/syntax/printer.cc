@@ -47,10 +47,6 @@ class FormulaPrinter {
     tasks_.push_back({{}, id, true, parentheses, parentheses ? kNothingFollows : follows});
   }
 
-  static bool is_quantifier(const Node& node) {
-    return node.kind == NodeKind::kForall || node.kind == NodeKind::kExists;
-  }
-
   void expand(const Task& task) {
     const auto begin = tasks_.size();
     if (task.parentheses) text("(");
@@ -73,6 +69,10 @@ class FormulaPrinter {
       case NodeKind::kExists:
         quantifier(node, task.follows);
         break;
+      case NodeKind::kCount:
+      case NodeKind::kSum:
+        aggregate(node);
+        break;
     }
     if (task.parentheses) text(")");
     std::reverse(tasks_.begin() + static_cast<std::ptrdiff_t>(begin), tasks_.end());
@@ -86,6 +86,16 @@ class FormulaPrinter {
       node(ast_.child(parent, i), false, kNothingFollows);
     }
     text(")");
+  }
+
+  void aggregate(const Node& parent) {
+    text(ast_.name(parent));
+    text("{");
+    for (std::uint32_t i = 0; i < parent.child_count; ++i) {
+      if (i != 0) text(i < parent.bound_count() ? "," : ": ");
+      node(ast_.child(parent, i), false, kNothingFollows);
+    }
+    text("}");
   }
 
   void unary(const Node& parent, int follows) {
@@ -135,7 +145,7 @@ class FormulaPrinter {
   /// True if `child` is a prefix that would take the operator after it into its scope.
   bool swallows(NodeId child_id, int follows) const {
     const Node& child = ast_[child_id];
-    if (is_quantifier(child)) return follows > kQuantifierBinding;
+    if (is_quantifier(child.kind)) return follows > kQuantifierBinding;
     return child.kind == NodeKind::kUnary && follows > binding(child.op);
   }
 

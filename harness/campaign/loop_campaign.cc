@@ -25,6 +25,13 @@ namespace {
 
 using LoopClock = std::chrono::steady_clock;
 
+bool has_no_execution(const base::DiagnosticSink& sink) {
+  const auto said = sink.sorted();
+  return std::any_of(said.begin(), said.end(), [](const base::Diagnostic& each) {
+    return each.code == codes::kModelUnsatisfiable;
+  });
+}
+
 class LoopCampaign {
  public:
   LoopCampaign(const Scenario& scenario, ClaimedRun claimed, LoopFeed& feed,
@@ -60,13 +67,13 @@ class LoopCampaign {
     result_.simulator = bench_.simulator();
     recorder_.set_simulator(result_.simulator);
     const auto prepared = samples_.prepare();
-    if (!prepared) return sink_.already_reported();
+    if (!prepared) {
+      // Repair needs the folder: if the world is a model, too, it says why this one has no start.
+      if (!scenario_.simulator.models.empty() && has_no_execution(sink_)) (void)open_journal();
+      return sink_.already_reported();
+    }
     if (!*prepared) return finished(true);
-    auto journal = Journal::open(
-        std::move(claimed_.folder), journal_header(scenario_, options_, result_.simulator),
-        std::move(claimed_.recorded), scenario_.limits.max_lost_in_a_row, files_, sink_);
-    if (!journal) return sink_.already_reported();
-    journal_ = std::move(*journal);
+    if (!open_journal()) return sink_.already_reported();
     result_.journal_open = true;
     stream_.loop->initial_states = samples_.initial_states();
     stream_.loop->has_weights = samples_.has_weights();
@@ -93,6 +100,15 @@ class LoopCampaign {
     kLost,
     kStopped
   };
+
+  base::Status open_journal() {
+    auto journal = Journal::open(
+        std::move(claimed_.folder), journal_header(scenario_, options_, result_.simulator),
+        std::move(claimed_.recorded), scenario_.limits.max_lost_in_a_row, files_, sink_);
+    if (!journal) return sink_.already_reported();
+    journal_ = std::move(*journal);
+    return base::Unit{};
+  }
 
   /// Called in a worker's thread; by then the journal is open.
   void keep(const SampleRecord& record) {

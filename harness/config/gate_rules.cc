@@ -43,7 +43,8 @@ std::vector<std::string_view> setting_rules() {
   }
   for (const auto key : kScenarioKeys) {
     const bool is_setting = key != Key::kInclude && key != Key::kName && key != Key::kModel &&
-                            key != Key::kPlan && key != Key::kBind && key != Key::kConstraints;
+                            key != Key::kPlan && key != Key::kBind && key != Key::kConstraints &&
+                            key != Key::kValidate;
     if (is_setting && std::find(out.begin(), out.end(), key) == out.end()) out.push_back(key);
   }
   return out;

@@ -111,6 +111,12 @@ YamlNode joint_node(const JointSpec& joint, const base::SourceRange& range) {
     out.number_unless_zero(Key::kMaxForceN, joint.max_force_n);
     out.number_unless_zero(Key::kDampingNSM, joint.damping_n_s_m);
   }
+  if (joint.follows) {
+    MapNode follows(range);
+    follows.text(Key::kJoint, joint.follows->leader);
+    follows.number(Key::kRatio, joint.follows->ratio);
+    out.put(Key::kFollows, follows.take());
+  }
   return out.take();
 }
 

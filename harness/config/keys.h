@@ -57,6 +57,7 @@ struct Key {
   static constexpr std::string_view kExecution = "execution";
   static constexpr std::string_view kFile = "file";
   static constexpr std::string_view kFixed = "fixed";
+  static constexpr std::string_view kFollows = "follows";
   static constexpr std::string_view kEngine = "engine";
   static constexpr std::string_view kFluent = "fluent";
   static constexpr std::string_view kForms = "forms";
@@ -95,6 +96,7 @@ struct Key {
   static constexpr std::string_view kStartWeights = "start_weights";
   static constexpr std::string_view kUndecided = "undecided";
   static constexpr std::string_view kUntilCovered = "until_covered";
+  static constexpr std::string_view kValidate = "validate";
   static constexpr std::string_view kUrdf = "urdf";
   static constexpr std::string_view kWhen = "when";
   static constexpr std::string_view kWeight = "weight";
@@ -206,6 +208,7 @@ struct Key {
   static constexpr std::string_view kParameters = "parameters";
   static constexpr std::string_view kParent = "parent";
   static constexpr std::string_view kPlaces = "places";
+  static constexpr std::string_view kPackages = "packages";
   static constexpr std::string_view kPlan = "plan";
   static constexpr std::string_view kPolygon = "polygon";
   static constexpr std::string_view kPositionM = "position_m";
@@ -215,6 +218,7 @@ struct Key {
   static constexpr std::string_view kRange = "range";
   static constexpr std::string_view kRangeM = "range_m";
   static constexpr std::string_view kRate = "rate";
+  static constexpr std::string_view kRatio = "ratio";
   static constexpr std::string_view kReachJoint = "reach_joint";
   static constexpr std::string_view kReachM = "reach_m";
   static constexpr std::string_view kRecycleAfter = "recycle_after";

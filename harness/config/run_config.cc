@@ -4,7 +4,7 @@
 
 #include "compiler/base/codes/scenarios.h"
 #include "harness/config/sections.h"
-#include "harness/engine/mujoco_module.h"
+#include "harness/engine/engine_module.h"
 
 namespace parallax::harness {
 namespace {
@@ -130,7 +130,7 @@ void read_engine(const YamlNode& node, std::string_view key, const char* known_a
                  SimulatorSpec& simulator, base::DiagnosticSink& sink) {
   if (const auto kind = kEngineWords.find(node.text)) {
     simulator.engine = *kind;
-    const std::string why = *kind == EngineKind::kMujoco ? why_no_mujoco() : std::string();
+    const std::string why = why_no_engine(*kind);
     if (!why.empty()) sink.error(codes::kEngineUnavailable, node.range, node.text, why);
     return;
   }

@@ -13,6 +13,7 @@
 #include "harness/config/load_limits.h"
 #include "harness/config/sections.h"
 #include "harness/config/settings_reader.h"
+#include "harness/config/validate_list.h"
 #include "harness/engine/world_check.h"
 #include "harness/region/area.h"
 #include "harness/world/world_layout.h"
@@ -113,9 +114,9 @@ void note_plan(const std::filesystem::path& path, base::SourceFiles& files) {
 }
 
 /// Keys that are easily written beside `world` instead of below it.
-constexpr std::array<std::string_view, 11> kWorldKeys = {
-    Key::kSdf,    Key::kUrdf,  Key::kMjcf,   Key::kModels,        Key::kBodies,  Key::kJoints,
-    Key::kPlaces, Key::kRobot, Key::kSolver, Key::kFloorMaterial, Key::kFriction};
+constexpr std::array<std::string_view, 12> kWorldKeys = {
+    Key::kSdf,    Key::kUrdf,  Key::kMjcf,   Key::kModels,        Key::kBodies,   Key::kJoints,
+    Key::kPlaces, Key::kRobot, Key::kSolver, Key::kFloorMaterial, Key::kFriction, Key::kPackages};
 
 class ScenarioReader {
  public:
@@ -164,6 +165,14 @@ class ScenarioReader {
       scenario.expect = read_expectation(*node, sink_);
       if (sink_.error_count() == errors_before) check_expectation(scenario, sink_);
     }
+  }
+
+  std::vector<LocatedText> read_validate() {
+    const auto* node = fields_.find(Key::kValidate);
+    if (node == nullptr) return {};
+    auto out = located_texts(*node, Key::kValidate, sink_);
+    for (auto& other : out) resolve(other, false);
+    return out;
   }
 
  private:
@@ -377,7 +386,9 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
   }
   ReadLog log;
   if (limits.settings != nullptr) log.attach(*root);
-  ScenarioReader(*root, gate, files, sink).read(scenario);
+  ScenarioReader reader(*root, gate, files, sink);
+  reader.read(scenario);
+  for (const auto& other : reader.read_validate()) files.note_input(other.text);
   if (limits.settings != nullptr) *limits.settings = settings_of(*root, log, files);
   for (const auto& model : scenario.models) files.note_input(model.text);
   for (const auto& model : scenario.simulator.models) files.note_input(model.text);
@@ -396,6 +407,20 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
   }
   if (sink.error_count() != errors_before) return sink.already_reported();
   return scenario;
+}
+
+base::Result<std::vector<LocatedText>> scenarios_to_validate(const std::filesystem::path& scenario,
+                                                             base::SourceFiles& files,
+                                                             base::DiagnosticSink& sink,
+                                                             bool allow_outside) {
+  const auto errors_before = sink.error_count();
+  base::PathGate gate(allow_outside, &files);
+  gate.admit_beside(scenario);
+  const auto root = load_yaml(scenario, gate, files, sink);
+  if (!root) return sink.already_reported();
+  auto out = ScenarioReader(*root, gate, files, sink).read_validate();
+  if (sink.error_count() != errors_before) return sink.already_reported();
+  return out;
 }
 
 base::Result<WorldSpec> load_world(const std::filesystem::path& path, base::SourceFiles& files,

@@ -53,6 +53,7 @@ constexpr std::array<SectionEffects, kScenarioKeys.size()> kSectionEffects = {{
     {Key::kLimits, {Effect::kClaim}},
     {Key::kSearch, {Effect::kClaim}},
     {Key::kExpect, {Effect::kClaim}},
+    {Key::kValidate, {Effect::kWords}},
 }};
 
 constexpr bool every_key_has_effects() {

@@ -19,12 +19,13 @@
 namespace parallax::harness {
 
 /// The outermost keys of a scenario.
-inline constexpr std::array<std::string_view, 25> kScenarioKeys = {
+inline constexpr std::array<std::string_view, 26> kScenarioKeys = {
     Key::kInclude,     Key::kName,      Key::kModel,    Key::kPlan,         Key::kBind,
     Key::kConstraints, Key::kHorizon,   Key::kEvents,   Key::kWorld,        Key::kRegions,
     Key::kMapping,     Key::kActions,   Key::kSampling, Key::kCriterion,    Key::kCompare,
     Key::kExecution,   Key::kStarts,    Key::kInitial,  Key::kStartWeights, Key::kUntilCovered,
-    Key::kMatch,       Key::kSimulator, Key::kLimits,   Key::kSearch,       Key::kExpect};
+    Key::kMatch,       Key::kSimulator, Key::kLimits,   Key::kSearch,       Key::kExpect,
+    Key::kValidate};
 
 inline constexpr std::int64_t kMaxHorizon = 1'000'000;  // of scenarios and cases alike
 

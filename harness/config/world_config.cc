@@ -73,6 +73,19 @@ void refuse_other_types(const YamlFields& fields, JointType type) {
     if (type != JointType::kSlider) refuse(Key::kDampingNSM, "sliders");
   }
   if (type != JointType::kGantry) refuse(Key::kSuspension, "gantries");
+  if (type != JointType::kSlider && type != JointType::kHinge) {
+    refuse(Key::kFollows, "sliders and hinges");
+  }
+}
+
+FollowSpec read_follows(const YamlNode& node, base::DiagnosticSink& sink) {
+  FollowSpec follows;
+  YamlFields fields(node, key_text(Key::kFollows), sink);
+  fields.only({Key::kJoint, Key::kRatio});
+  fields.require(Key::kJoint);
+  fields.text(Key::kJoint, follows.leader);
+  fields.number(Key::kRatio, kAnyNumber, follows.ratio);
+  return follows;
 }
 
 SuspensionSpec read_suspension(const YamlNode& node, base::DiagnosticSink& sink) {
@@ -89,17 +102,18 @@ SuspensionSpec read_suspension(const YamlNode& node, base::DiagnosticSink& sink)
 }
 
 /// Two numbers, or nothing in the place of one of them: no stop on that side.
-void read_slide(const YamlFields& fields, JointSpec& joint) {
-  const YamlNode* range = fields.find(Key::kRangeM);
+void read_stops(const YamlFields& fields, std::string_view key, std::optional<double>& low,
+                std::optional<double>& high) {
+  const YamlNode* range = fields.find(key);
   const auto is_none = [](const YamlNode& node) { return node.kind == YamlNode::Kind::kNull; };
   if (range != nullptr && range->is_list() && range->items.size() == 2 &&
       is_none(range->items[0]) != is_none(range->items[1])) {
     const bool has_low = is_none(range->items[1]);
-    (has_low ? joint.low_m : joint.high_m) = read_number(
-        range->items[has_low ? 0 : 1], key_text(Key::kRangeM), kAnyNumber, fields.sink());
-  } else if (const auto both = fields.numbers(Key::kRangeM, 2)) {
-    joint.low_m = (*both)[0];
-    joint.high_m = (*both)[1];
+    (has_low ? low : high) =
+        read_number(range->items[has_low ? 0 : 1], key_text(key), kAnyNumber, fields.sink());
+  } else if (const auto both = fields.numbers(key, 2)) {
+    low = (*both)[0];
+    high = (*both)[1];
   }
 }
 
@@ -110,7 +124,7 @@ JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
   YamlFields fields(entry.value, fmt::format("the joint `{}`", entry.key), sink);
   fields.only({Key::kType, Key::kParent, Key::kChild, Key::kAxis, Key::kRangeM, Key::kMaxForceN,
                Key::kMaxTorqueNm, Key::kHandle, Key::kAtM, Key::kRangeRad, Key::kDampingNSM,
-               Key::kDampingNmS, Key::kSuspension});
+               Key::kDampingNmS, Key::kSuspension, Key::kFollows});
   const auto type = fields.choice(Key::kType, "type of joint", kTypes, 0);
   if (type == std::size_t{1}) joint.type = JointType::kFixed;
   if (type == std::size_t{2}) joint.type = JointType::kGantry;
@@ -126,12 +140,9 @@ JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
   fields.require(Key::kChild);
   fields.text(Key::kChild, joint.child);
   read_axis(fields, joint);
-  read_slide(fields, joint);
+  read_stops(fields, Key::kRangeM, joint.low_m, joint.high_m);
   read_vector(fields, Key::kAtM, joint.p_WA);
-  if (const auto range = fields.numbers(Key::kRangeRad, 2)) {
-    joint.low_rad = (*range)[0];
-    joint.high_rad = (*range)[1];
-  }
+  read_stops(fields, Key::kRangeRad, joint.low_rad, joint.high_rad);
   fields.number(Key::kDampingNSM, kNotNegative, joint.damping_n_s_m);
   fields.number(Key::kDampingNmS, kNotNegative, joint.damping_nm_s);
   fields.number(Key::kMaxForceN, kNotNegative, joint.max_force_n);
@@ -140,6 +151,8 @@ JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
   if (const auto* springs = fields.find(Key::kSuspension)) {
     joint.suspension = read_suspension(*springs, sink);
   }
+  if (const auto* follows = fields.find(Key::kFollows))
+    joint.follows = read_follows(*follows, sink);
   return joint;
 }
 
@@ -229,7 +242,7 @@ WorldSpec read_world(const YamlNode& node, EngineKind engine, base::DiagnosticSi
   YamlFields fields(node, key_text(Key::kWorld), sink);
   fields.only({Key::kInclude, Key::kSolver, Key::kFriction, Key::kFloorMaterial, Key::kBodies,
                Key::kJoints, Key::kPlaces, Key::kRobot, Key::kSdf, Key::kUrdf, Key::kMjcf,
-               Key::kModels});  // the last four were taken over before
+               Key::kModels, Key::kPackages});  // the last five were taken over before
   fields.text(Key::kFloorMaterial, world.floor_material);
   if (const auto* solver = fields.find(Key::kSolver)) world.solver = read_solver(*solver, sink);
   if (const auto* bodies = fields.require(Key::kBodies)) {

@@ -13,6 +13,7 @@
 #include "harness/config/sections.h"
 #include "harness/import/import.h"
 #include "harness/import/mesh.h"
+#include "harness/import/plain_path.h"
 #include "harness/import/way_within.h"
 #include "harness/world/structure_check.h"
 
@@ -174,14 +175,17 @@ class WorldImporter {
 
   /// Folders of models mean nothing where nothing is taken over.
   bool refuse_models() {
-    const auto* models = world_.find(Key::kModels);
-    if (models == nullptr) return true;
-    sink_
-        .error(codes::kUnknownKey, models->key_range, models->key,
-               fmt::format("`{}` that takes no file over", Key::kWorld))
-        .help(fmt::format("Name the file to take over with `{}`, `{}` or `{}`.", Key::kSdf,
-                          Key::kUrdf, Key::kMjcf));
-    return false;
+    for (const auto key : {Key::kModels, Key::kPackages}) {
+      const auto* models = world_.find(key);
+      if (models == nullptr) continue;
+      sink_
+          .error(codes::kUnknownKey, models->key_range, models->key,
+                 fmt::format("`{}` that takes no file over", Key::kWorld))
+          .help(fmt::format("Name the file to take over with `{}`, `{}` or `{}`.", Key::kSdf,
+                            Key::kUrdf, Key::kMjcf));
+      return false;
+    }
+    return true;
   }
 
   void refuse_fixed(const YamlEntry& fixed) {
@@ -200,19 +204,32 @@ class WorldImporter {
   }
 
   void read_folders() {
-    const auto* models = world_.find(Key::kModels);
-    if (models == nullptr) return;
-    for (const auto& one : located_texts(models->value, Key::kModels, sink_)) {
-      const auto folder = path_beside(one.source, one.text, files_);
-      if (!gate_.check(folder, one.source, sink_)) continue;
-      std::error_code error;
-      if (!std::filesystem::is_directory(folder, error) ||
-          folder.string().find(':') != std::string::npos) {
-        sink_.error(codes::kBadImport, one.source, fmt::format("`{}` is no folder", one.text));
-        continue;
+    if (const auto* models = world_.find(Key::kModels)) {
+      for (const auto& one : located_texts(models->value, Key::kModels, sink_)) {
+        if (auto folder = folder_at(one.text, one.source)) input_.folders.push_back(*folder);
       }
-      input_.folders.push_back(base::real_path(folder));
     }
+    const auto* packages = world_.find(Key::kPackages);
+    if (packages == nullptr) return;
+    const YamlFields all(packages->value, key_text(Key::kPackages), sink_);
+    for (const YamlEntry& entry : packages->value.entries) {
+      const auto text = read_text(entry.value, key_text(entry.key), sink_);
+      const auto folder = text ? folder_at(*text, entry.value.range) : std::nullopt;
+      if (folder) input_.packages[entry.key] = *folder;
+    }
+  }
+
+  std::optional<std::filesystem::path> folder_at(const std::string& text,
+                                                 const base::SourceRange& place) {
+    const auto folder = path_beside(place, text, files_);
+    if (!gate_.check(folder, place, sink_)) return std::nullopt;
+    std::error_code error;
+    if (!std::filesystem::is_directory(folder, error) ||
+        folder.string().find(':') != std::string::npos) {
+      sink_.error(codes::kBadImport, place, fmt::format("`{}` is no folder", text));
+      return std::nullopt;
+    }
+    return base::real_path(folder);
   }
 
   bool is_there(const YamlEntry& entry) {
@@ -231,18 +248,21 @@ class WorldImporter {
     return range;
   }
 
-  /// A plain way down from a folder of `models`, or from that of the description. Whether it may be
-  /// read is decided when it is.
+  /// A plain way down from a package or a folder of `models`, or from that of the description.
+  /// Whether it may be read is decided when it is.
   std::optional<std::string> mesh_file(const std::string& uri,
                                        const std::filesystem::path& description) const {
     namespace fs = std::filesystem;
     if (!reads_meshes()) return std::nullopt;
     std::vector<fs::path> folders = {description.parent_path()};
     std::string name = uri;
-    for (const std::string_view scheme : {"model://", "package://"}) {
-      if (!uri.starts_with(scheme)) continue;
-      folders = input_.folders;
-      name = uri.substr(scheme.size());
+    if (const auto part = package_part(uri)) {
+      if (!is_plain_path(part->name)) return std::nullopt;
+      folders.clear();
+      for (const auto& place : package_places(part->name, input_.folders, input_.packages)) {
+        folders.push_back(place.package);
+      }
+      name = part->rest;
     }
     const fs::path way(name);
     if (name.find(':') != name.npos || way.is_absolute()) return std::nullopt;
@@ -267,6 +287,7 @@ class WorldImporter {
                                              const std::filesystem::path& description) const {
     std::vector<std::filesystem::path> roots = {base::real_path(description).parent_path()};
     roots.insert(roots.end(), input_.folders.begin(), input_.folders.end());
+    for (const auto& [name_of, folder] : input_.packages) roots.push_back(folder);
     for (const auto& folder : folders) {
       const auto way = way_within(base::real_path(folder), name, roots);
       if (!way) continue;
@@ -295,7 +316,7 @@ class WorldImporter {
       under.put(Key::kSolver, solver.take());
     }
     std::erase_if(world_.entries, [&](const YamlEntry& entry) {
-      return entry.key == format_->key || entry.key == Key::kModels;
+      return entry.key == format_->key || entry.key == Key::kModels || entry.key == Key::kPackages;
     });
     const auto range = world_.range;
     YamlNode imported = under.take();

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "harness/engine/mujoco_module.h"
+#include "harness/engine/engine_module.h"
 #include "harness/engine/physics_world.h"
 
 namespace parallax::harness {
@@ -51,7 +51,7 @@ WorldSpec fixed_world() {
 }  // namespace
 
 std::string engine_digits(EngineKind engine) {
-  if (engine == EngineKind::kMujoco && !has_mujoco()) return "none";
+  if (!has_engine(engine)) return "none";
   auto spec = fixed_world();
   spec.engine = engine;
   const auto world = make_world(spec);

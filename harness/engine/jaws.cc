@@ -32,6 +32,7 @@ Jaws::Jaws(const ArmSpec& spec, const PhysicsWorld& world) {
   full_gap_m_ = line.dot(middle(near) - middle(far)) -
                 extent_along(world, near_pad, near_shape, line).half_m -
                 extent_along(world, far_pad, far_shape, line).half_m;
+  gain_ = grip_gain(layout, spec.finger_joint, spec.near_pad_body);
 
   constexpr double kNone = std::numeric_limits<double>::infinity();
   opening_limits_m_ = std::minmax(

@@ -20,14 +20,18 @@ class Jaws {
   /// Sign of the way of the finger that narrows the gap.
   double closing_sign() const { return closing_sign_; }
   /// Gap between the pads' inner faces at this position of the finger's joint, and the reverse.
-  double opening_m(double finger_m) const { return full_gap_m_ - closing_sign_ * finger_m; }
-  double finger_m(double opening_m) const { return closing_sign_ * (full_gap_m_ - opening_m); }
+  double opening_m(double finger_m) const { return full_gap_m_ - closing_sign_ * gain_ * finger_m; }
+  double finger_m(double opening_m) const {
+    return closing_sign_ * (full_gap_m_ - opening_m) / gain_;
+  }
+  /// The force of the finger's motor for each newton of squeeze.
+  double gain() const { return gain_; }
   /// The narrowest and the widest opening that the stops of the finger allow.
   std::pair<double, double> opening_limits_m() const { return opening_limits_m_; }
 
  private:
   Eigen::Vector3d tool_P_, pad_line_P_;
-  double closing_sign_ = 1.0;
+  double closing_sign_ = 1.0, gain_ = 1.0;
   double full_gap_m_ = 0.0;  // at finger position 0
   std::pair<double, double> opening_limits_m_;
 };

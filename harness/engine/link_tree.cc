@@ -14,8 +14,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "harness/world/shapes.h"
 
 namespace parallax::harness {
@@ -191,13 +189,6 @@ class TreeGrower {
 };
 
 }  // namespace
-
-Eigen::Matrix3d rotation_about_z(double angle_rad) {
-  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
-  Eigen::Matrix3d R;
-  R << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
-  return R;
-}
 
 std::variant<LinkTree, TreeProblem> grow_tree(const WorldLayout& layout) {
   return TreeGrower(layout).grow();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -29,7 +30,12 @@ struct TreeLink {
   bool gravity = false;
 };
 
-Eigen::Matrix3d rotation_about_z(double angle_rad);
+inline Eigen::Matrix3d rotation_about_z(double angle_rad) {
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  Eigen::Matrix3d R;
+  R << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
+  return R;
+}
 
 /// Pose of body B in its link L (in the world for a static body).
 struct PoseInLink {

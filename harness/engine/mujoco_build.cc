@@ -6,6 +6,7 @@
 
 #include "harness/engine/mujoco_engine.h"
 #include "harness/engine/mujoco_errors.h"
+#include "harness/engine/tree_start.h"
 
 // The world is handed over as text in the engine's own language, the only way in that its library
 // has; the text never is a file.
@@ -66,14 +67,9 @@ void preload(MujocoWorld::Engine& engine) {
     const auto& springs = engine.layout.gantries[engine.layout.gantries.id_at(i)].suspension;
     double& preload_m = engine.preloads_m.emplace_back(0.0);
     if (!springs) continue;
-    const auto assembly_of = [&](const TreeLink& link) {
-      return engine.layout.assembly_of[link.frame.index()];
-    };
-    const auto own = assembly_of(engine.tree.links[engine.gantries[i]]);
-    for (const TreeLink& link : engine.tree.links) {
-      if (!link.gravity || assembly_of(link) != own) continue;
-      preload_m -= link.mass_kg * engine.solver.gravity_m_s2 / springs->stiffness_n_m;
-    }
+    preload_m = carried_weight_n(engine.layout, engine.tree, engine.gantries[i],
+                                 engine.solver.gravity_m_s2) /
+                springs->stiffness_n_m;
   }
 }
 

@@ -8,8 +8,7 @@
 //
 // A probe is a geom that collides with nothing by itself: it is put where it is asked for,
 // spheres round the geoms exclude most of them, and the collision function gives the depth for
-// the rest. A ray against a hull is clipped by the half-spaces of its faces (Cyrus and Beck
-// 1978).
+// the rest. Rays against hulls are ours (shape_rays.cc).
 //
 // Cost: a probe or a ray is linear in the geoms, a ray in the faces of the hulls that it comes
 // near.
@@ -19,13 +18,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "compiler/base/contract.h"
 #include "harness/engine/hull_contacts.h"
 #include "harness/engine/mujoco_engine.h"
 #include "harness/engine/mujoco_errors.h"
+#include "harness/engine/shape_rays.h"
 
 namespace parallax::harness {
 namespace {
@@ -126,23 +125,6 @@ std::optional<double> depth_of(const Engine& engine, int a, int b) {
   return deepest;
 }
 
-/// Where a ray of unit direction comes into a hull, or out of it where it begins in it.
-std::optional<double> ray_meets_hull(const ConvexHull& hull, const Eigen::Vector3d& from_H,
-                                     const Eigen::Vector3d& direction_H) {
-  double in_m = 0.0, out_m = std::numeric_limits<double>::infinity();
-  bool begins_inside = true;
-  for (std::size_t i = 0; i < hull.normals.size(); ++i) {
-    const double above_m = hull.normals[i].dot(from_H) - hull.offsets[i];
-    const double rate = hull.normals[i].dot(direction_H);
-    if (above_m > 0.0) begins_inside = false;
-    if (rate == 0.0 && above_m > 0.0) return std::nullopt;
-    if (rate < 0.0) in_m = std::max(in_m, -above_m / rate);
-    if (rate > 0.0) out_m = std::min(out_m, -above_m / rate);
-  }
-  if (in_m > out_m || out_m < 0.0) return std::nullopt;
-  return begins_inside ? out_m : in_m;
-}
-
 /// Along a ray of unit direction; none where the geom is not met.
 std::optional<double> ray_meets_geom(const Engine& engine, int geom, const Eigen::Vector3d& from,
                                      const Eigen::Vector3d& direction) {
@@ -158,8 +140,8 @@ std::optional<double> ray_meets_geom(const Engine& engine, int geom, const Eigen
   if (d.squaredNorm() - std::pow(d.dot(direction), 2) > radius_m * radius_m) return std::nullopt;
   if (const MeshHull* mesh = engine.hull_of[static_cast<std::size_t>(geom)]) {
     const PlacedMesh at = place_of(data, geom, *mesh);
-    return ray_meets_hull(*mesh->hull, at.R_WH.transpose() * (from - at.p_WH),
-                          at.R_WH.transpose() * direction);
+    return ray_meets_shape(ShapeForm::kHull, mesh->hull->size_m, mesh->hull.get(),
+                           at.R_WH.transpose() * (from - at.p_WH), at.R_WH.transpose() * direction);
   }
   const double way_m =
       mju_rayGeom(data.geom_xpos + 3 * geom, data.geom_xmat + 9 * geom, model.geom_size + 3 * geom,

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/engine/mujoco_module.h"
+#include "harness/engine/engine_module.h"
 #include "harness/engine/mujoco_world.h"
 
 // The engine's own types, as its headers name them; only mujoco_*.cc sees more of them.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
 
 #include "compiler/base/word_table.h"
 #include "harness/engine/mujoco_engine.h"
@@ -66,6 +67,7 @@ class TextWriter {
     for (const LinkId child : children_[0]) write_link(child);
     out_ += "</worldbody>\n";
     write_exclusions();
+    write_followers();
     out_ += "</mujoco>\n";
     return {std::move(out_), std::move(geom_bodies_), std::move(geom_hulls_), std::move(hulls_)};
   }
@@ -211,6 +213,25 @@ class TextWriter {
                           high.value_or(kNever));
     }
     out_ += "/>\n";
+  }
+
+  void write_followers() {
+    std::map<std::string, std::string> names;  // of the engine, by our own
+    for (std::size_t i = 0; i < tree_.links.size(); ++i) {
+      names[tree_.links[tree_.links.id_at(i)].joint_name] = joint_name(i, 0);
+    }
+    out_ += "<equality>\n";
+    const auto write = [&](const JointSpec& spec) {
+      if (!spec.follows) return;
+      out_ += fmt::format(
+          "<joint joint1='{0}' joint2='{1}' polycoef='0 {2:.17g} 0 0 0' solref='{3:.17g} 1' "
+          "solimp='{4} {4} 1 0.5 2'/>\n",
+          names.at(spec.name), names.at(spec.follows->leader), spec.follows->ratio,
+          2.0 * input_.spec.solver.timestep_s, kRigid);
+    };
+    for (const JointSpec& spec : layout_.sliders) write(spec);
+    for (const JointSpec& spec : layout_.hinges) write(spec);
+    out_ += "</equality>\n";
   }
 
   /// Excludes pairs of links that hang together from collision altogether. Other pairs that never

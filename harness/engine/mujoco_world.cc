@@ -2,7 +2,6 @@
 
 #include <mujoco/mujoco.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -11,6 +10,7 @@
 #include "compiler/base/contract.h"
 #include "harness/engine/mujoco_engine.h"
 #include "harness/engine/mujoco_errors.h"
+#include "harness/engine/tree_start.h"
 #include "harness/world/angles.h"
 
 namespace parallax::harness {
@@ -30,65 +30,27 @@ void set_hooks() {
   });
 }
 
-Eigen::Matrix3d about_z(double angle_rad) {
-  return Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-}
-
-struct PlacedLink {
-  Eigen::Vector3d p_WL = Eigen::Vector3d::Zero();
-  double yaw_rad = 0.0;
-};
-
-PlacedLink place_by(const TreeLink& link, std::span<const Placement> placements) {
-  const Placement& at = placements[link.frame.index()];
-  return {at.p_WB, at.yaw_rad};
-}
-
-PlacedLink default_place(const Engine& engine, const TreeLink& link) {
-  const BodySpec& body = engine.layout.bodies[link.frame];
-  return {body.p_WB, body.yaw_rad};
-}
-
-/// The centre of mass and the heading of a link in its parent.
-struct PlaceInParent {
-  Eigen::Vector3d p_PC = Eigen::Vector3d::Zero();
-  double yaw_rad = 0.0;
-};
-
-PlaceInParent in_parent(const TreeLink& link, const PlacedLink& own, const PlacedLink& parent) {
-  const Eigen::Matrix3d R_PW = about_z(-parent.yaw_rad);
-  const Eigen::Vector3d p_WC = own.p_WL + about_z(own.yaw_rad) * link.p_LC;
-  return {R_PW * (p_WC - parent.p_WL), own.yaw_rad - parent.yaw_rad};
-}
-
 void set_joint(Engine& engine, LinkId id, std::span<const Placement> placements) {
   const TreeLink& link = engine.tree.links[id];
-  const PlacedLink own = place_by(link, placements);
+  const LinkStart start = start_of(engine.layout, engine.tree, id, placements);
   mjtNum* const q = engine.data->qpos + engine.joints[id.index()].q;
-  if (link.joint == LinkJoint::kFree) {
-    std::copy_n(own.p_WL.data(), 3, q);
-    q[3] = std::cos(0.5 * own.yaw_rad);
-    q[4] = q[5] = 0.0;
-    q[6] = std::sin(0.5 * own.yaw_rad);
-    return;
+  switch (link.joint) {
+    case LinkJoint::kFree:
+      std::copy_n(start.p_WL.data(), 3, q);
+      q[3] = std::cos(0.5 * start.yaw_rad);
+      q[4] = q[5] = 0.0;
+      q[6] = std::sin(0.5 * start.yaw_rad);
+      return;
+    case LinkJoint::kGantry:
+      std::copy_n(start.shift_P.data(), 3, q);
+      q[3] = start.turn_rad;
+      return;
+    case LinkJoint::kSlider:
+      q[0] = start.slide_m;
+      return;
+    case LinkJoint::kHinge:
+      return;
   }
-  PlacedLink parent, parent_default;
-  if (link.parent) {
-    const TreeLink& on = engine.tree.links[*link.parent];
-    parent = place_by(on, placements);
-    parent_default = default_place(engine, on);
-  }
-  const PlaceInParent now = in_parent(link, own, parent);
-  const PlaceInParent then = in_parent(link, default_place(engine, link), parent_default);
-  const Eigen::Vector3d shift_P = now.p_PC - then.p_PC;
-  if (link.joint == LinkJoint::kGantry) {
-    std::copy_n(shift_P.data(), 3, q);
-    q[3] = wrapped(now.yaw_rad - then.yaw_rad);
-  } else if (link.joint == LinkJoint::kSlider) {
-    const JointSpec& spec = engine.layout.sliders[engine.layout.sliders.id_at(link.joint_index)];
-    q[0] = (about_z(-parent_default.yaw_rad) * spec.axis_W.normalized()).dot(shift_P);
-  }
-  // A hinge begins where it is by default: no start sets it.
 }
 
 /// Every mass from what is specified, so that no rounding of earlier resets is left.
@@ -252,7 +214,8 @@ void MujocoWorld::set_motor(SliderId id, double velocity_m_s, double max_force_n
 }
 
 double MujocoWorld::hinge_angle_rad(HingeId id) const {
-  return wrapped(engine_->data->qpos[engine_->joints[engine_->hinges[id.index()].index()].q]);
+  const double angle = engine_->data->qpos[engine_->joints[engine_->hinges[id.index()].index()].q];
+  return counts_turns(engine_->layout.hinges[id]) ? angle : wrapped(angle);
 }
 
 double MujocoWorld::hinge_rate_rad_s(HingeId id) const {
@@ -265,13 +228,7 @@ void MujocoWorld::set_hinge_motor(HingeId id, double rate_rad_s, double max_torq
 }
 
 Eigen::Vector3d MujocoWorld::gantry_position_m(GantryId id) const {
-  const TreeLink& link = engine_->tree.links[engine_->gantries[id.index()]];
-  const BodySpec& child = engine_->layout.bodies[link.joint_child];
-  const Eigen::Vector3d p_WC = position(link.joint_child);
-  if (!link.joint_parent) return p_WC - child.p_WB;
-  const BodySpec& parent = engine_->layout.bodies[*link.joint_parent];
-  const Eigen::Vector3d start_P = about_z(-parent.yaw_rad) * (child.p_WB - parent.p_WB);
-  return rotation(*link.joint_parent).transpose() * (p_WC - position(*link.joint_parent)) - start_P;
+  return harness::gantry_position_m(*this, engine_->tree.links[engine_->gantries[id.index()]]);
 }
 
 double MujocoWorld::gantry_yaw_rad(GantryId id) const {

@@ -8,7 +8,7 @@
 
 namespace parallax::harness {
 
-struct EngineInput;  // mujoco_module.h
+struct EngineInput;  // engine_module.h
 
 /// A world that MuJoCo steps: generalised coordinates, soft contacts of an elliptic cone, Newton's
 /// method (Todorov, ICRA 2014; "Computation" in the documentation).

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "harness/engine/ode_engine.h"
+#include "harness/engine/ode_follow.h"
 #include "harness/engine/ode_rest.h"
 #include "harness/world/shapes.h"
 
@@ -101,6 +102,7 @@ void OdeBuilder::build() {
   create_hinges();
   engine_.gantry_orders.resize(engine_.gantries.size());
   engine_.touched.resize(engine_.links.size());
+  engine_.followers = std::make_unique<Followers>(engine_);
   engine_.resting = std::make_unique<RestingJoints>(engine_);
 }
 
@@ -282,6 +284,9 @@ void OdeBuilder::create_hinges() {
     dJointSetHingeAxis(joint, axis.x(), axis.y(), axis.z());
     if (spec.low_rad) dJointSetHingeParam(joint, dParamLoStop, *spec.low_rad);
     if (spec.high_rad) dJointSetHingeParam(joint, dParamHiStop, *spec.high_rad);
+    if (counts_turns(spec) || spec.follows || engine_.layout.leads(spec.name)) {
+      engine_.turn_counts.push_back({engine_.layout.hinges.id_at(engine_.hinges.size())});
+    }
     engine_.hinges.push_back(joint);
     // At a stop the motor of the hinge itself would push with all its force, also one at rest.
     engine_.turners.push_back(turner_of(spec));

@@ -49,6 +49,13 @@ struct GantryOrder {
   bool waiting = false;
 };
 
+/// The whole turns that a hinge with far stops has made (ode_turns.cc).
+struct TurnCount {
+  HingeId hinge;
+  int whole = 0;
+  double last_rad = 0.0;  // the engine's angle after the last step
+};
+
 /// A contact of the next step, before it is known which bodies move.
 struct NewContact {
   dxGeom *a = nullptr, *b = nullptr;
@@ -58,6 +65,7 @@ struct NewContact {
 };
 
 class RestingJoints;
+class Followers;
 
 /// The data of a geom of the world.
 const GeomInfo& info_of(dxGeom* geom);
@@ -79,9 +87,11 @@ struct OdeWorld::Engine final : EngineState {
   std::vector<dxJoint*> hinges;            // by HingeId
   std::vector<dxJoint*> turners;           // by HingeId: their motors
   std::vector<dxJoint*> hinge_dampers;     // by HingeId; null: none
+  std::vector<TurnCount> turn_counts;      // of hinges that may pass half a turn, or are coupled
   std::vector<GeomInfo> geoms;             // never grows after building: geoms point into it
   std::vector<bool> touched;               // by LinkId, of the robot: in the next step
   std::vector<NewContact> new_contacts;
+  std::unique_ptr<Followers> followers;
   std::unique_ptr<RestingJoints> resting;
   /// The engine's meshes, one for each hull. Held here as long as geoms refer to them.
   std::vector<std::pair<std::shared_ptr<const ConvexHull>, dxTriMeshData*>> meshes;
@@ -133,6 +143,13 @@ Eigen::Matrix3d parent_rotation(const OdeWorld& world, const Gantry& gantry);
 
 /// Passes pending commands to the motors of gantries.
 void carry_out_orders(const OdeWorld& world, OdeWorld::Engine& engine);
+
+/// Counts the turns of hinges after a step, and moves their stops along.
+void count_turns(OdeWorld::Engine& engine);
+/// Puts far stops where the engine's angles meet them in the current turn.
+void move_far_stops(OdeWorld::Engine& engine);
+/// To be added to the engine's angle; 0 where no turns are counted.
+double whole_turns_rad(const OdeWorld::Engine& engine, HingeId id);
 
 /// Gives a free body another mass, spread as before.
 void set_free_mass(OdeWorld::Engine& engine, BodyId id, double mass_kg);

@@ -20,6 +20,7 @@
 #include <deque>
 #include <utility>
 
+#include "harness/engine/ode_follow.h"
 #include "harness/engine/ode_vector.h"
 
 namespace parallax::harness {
@@ -46,7 +47,8 @@ Hosts::Hosts(OdeWorld::Engine& engine) : engine_(engine), feedback_(new Feedback
     links_[i].mass_kg = mass.mass;
     links_[i].I_L = to_matrix(mass.I);
   }
-  if (!engine.solver.resting_joints) return;
+  // Couplings push the parents of their joints, too, which no feedback of the engine tells.
+  if (!engine.solver.resting_joints || engine.followers->any()) return;
   collect_joints();
   sort_joints();
   find_chains();

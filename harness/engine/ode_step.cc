@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "harness/engine/ode_engine.h"
+#include "harness/engine/ode_follow.h"
 #include "harness/engine/ode_rest.h"
 
 // The pivoting solver of ODE gives up where contacts are redundant and rounding decides which of
@@ -66,16 +67,21 @@ class Before {
 
 void solve_step(OdeWorld::Engine& engine, std::int64_t& complaints) {
   const Before before(engine);
+  engine.followers->begin_step();
   double softening = 1.0;
-  for (int attempt = 1;; ++attempt) {
+  for (int attempt = 1;;) {
     complaints = 0;
     attach_contacts(engine, softening);
+    engine.followers->push();
     dWorldStep(engine.world, engine.solver.timestep_s);
-    if (complaints == 0 || attempt == kMostAttempts) break;
-    if (attempt == 1) ++engine.statistics.solved_again;
+    const bool gave_up = complaints > 0 && attempt < kMostAttempts;
+    if (!gave_up && !engine.followers->correct()) break;
+    if (gave_up) {
+      if (attempt++ == 1) ++engine.statistics.solved_again;
+      softening *= kSofter;
+    }
     before.restore();
     dJointGroupEmpty(engine.contact_group);
-    softening *= kSofter;
   }
 }
 

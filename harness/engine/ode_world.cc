@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "harness/engine/ode_engine.h"
+#include "harness/engine/ode_follow.h"
 #include "harness/engine/ode_rest.h"
 #include "harness/engine/ode_vector.h"
 #include "harness/world/angles.h"
@@ -105,6 +106,9 @@ void OdeWorld::place(std::span<const Placement> placements, std::uint64_t seed) 
     ++index;
   }
   engine_->resting->reset();
+  for (TurnCount& turns : engine_->turn_counts) turns.whole = 0;
+  move_far_stops(*engine_);
+  engine_->followers->reset();
   dRandSetSeed(static_cast<unsigned long>(seed));  // one generator per process
 }
 
@@ -140,6 +144,7 @@ bool OdeWorld::step() {
   solve_step(*engine_, complaints);
   engine_->statistics.engine_messages += complaints;
   engine_->resting->end_step();
+  count_turns(*engine_);
   engine_->statistics.joints_at_rest = engine_->resting->resting();
   timer.add_lap_to(engine_->statistics.solve_s);
   dJointGroupEmpty(engine_->contact_group);
@@ -165,7 +170,8 @@ void OdeWorld::set_motor(SliderId id, double velocity_m_s, double max_force_n) {
 }
 
 double OdeWorld::hinge_angle_rad(HingeId id) const {
-  return dJointGetHingeAngle(engine_->hinges[id.index()]);
+  const double angle = dJointGetHingeAngle(engine_->hinges[id.index()]);
+  return counts_turns(engine_->layout.hinges[id]) ? angle + whole_turns_rad(*engine_, id) : angle;
 }
 
 double OdeWorld::hinge_rate_rad_s(HingeId id) const {

@@ -4,15 +4,15 @@
 #include <memory>
 #include <vector>
 
-#include "harness/engine/mujoco_module.h"
+#include "harness/engine/engine_module.h"
 #include "harness/engine/ode_world.h"
 #include "harness/world/shapes.h"
 
 namespace parallax::harness {
 
 std::unique_ptr<PhysicsWorld> make_world(const WorldSpec& spec) {
-  if (spec.engine == EngineKind::kMujoco) return make_mujoco_world(spec);
-  return std::make_unique<OdeWorld>(spec);
+  if (spec.engine == EngineKind::kOde) return std::make_unique<OdeWorld>(spec);
+  return make_module_world(spec);
 }
 
 Probe PhysicsWorld::placed(BodyId id, const BodyShape& shape) const {

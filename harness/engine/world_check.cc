@@ -7,8 +7,8 @@
 #include <limits>
 #include <memory>
 
+#include "harness/engine/engine_module.h"
 #include "harness/engine/jaws.h"
-#include "harness/engine/mujoco_module.h"
 #include "harness/engine/physics_world.h"
 #include "harness/engine/sweep.h"
 #include "harness/engine/world_check.h"
@@ -231,8 +231,8 @@ class GripperChecker {
       check_hand_near(*spec.mobile, arm, jaws, world, problems);
       const auto limits = jaws.opening_limits_m();
       const auto finger = world.layout().find_slider(arm.finger_joint);
-      ranges_.push_back(
-          {&arm, limits.first, limits.second, world.layout().sliders[*finger].max_force_n});
+      ranges_.push_back({&arm, limits.first, limits.second,
+                         world.layout().sliders[*finger].max_force_n / jaws.gain()});
     }
   }
 
@@ -305,10 +305,11 @@ void check_grippers(const WorldSpec& spec, ProblemList& problems) {
   if (spec.mobile) GripperChecker(spec, problems).run();
 }
 
-/// Reports a joint that MuJoCo cannot represent.
-void check_for_mujoco(const WorldSpec& spec, ProblemList& problems) {
-  if (const auto problem = mujoco_problem(spec)) {
-    problems.add("joints/" + problem->joint, problem->message + "; MuJoCo needs one");
+/// Reports a joint that an engine of joint coordinates cannot represent.
+void check_tree(const WorldSpec& spec, ProblemList& problems) {
+  if (const auto problem = tree_problem(spec)) {
+    problems.add("joints/" + problem->joint,
+                 fmt::format("{}; {} needs one", problem->message, engine_title(spec.engine)));
   }
 }
 
@@ -316,7 +317,7 @@ void check_for_mujoco(const WorldSpec& spec, ProblemList& problems) {
 
 std::vector<WorldProblem> check_world(const WorldSpec& spec) {
   ProblemList problems(check_structure(spec));
-  if (spec.engine == EngineKind::kMujoco && problems.empty()) check_for_mujoco(spec, problems);
+  if (needs_tree(spec.engine) && problems.empty()) check_tree(spec, problems);
   if (problems.empty()) check_geometry(spec, problems);
   if (problems.empty()) check_grippers(spec, problems);
   if (problems.empty()) check_overlaps(spec, problems);

@@ -194,10 +194,12 @@ void add_tests(const ActionInput& in, std::string_view controller, ProvableActio
   action.left_to_simulation = "no test of its controller is decided by the start alone";
 }
 
-/// Does the world have only parts that the tests support? These are upright boxes, without hinges
-/// and without bodies that are kept apart.
+/// Does the world have only parts that the tests support? These are upright boxes, without hinges,
+/// joints that follow others and bodies that are kept apart.
 bool is_of_upright_boxes(const WorldLayout& layout) {
+  const auto follows = [](const JointSpec& joint) { return joint.follows.has_value(); };
   return layout.hinges.empty() &&
+         std::none_of(layout.sliders.begin(), layout.sliders.end(), follows) &&
          std::all_of(layout.bodies.begin(), layout.bodies.end(), [](const BodySpec& body) {
            return body.apart.empty() &&
                   std::all_of(body.shapes.begin(), body.shapes.end(), &is_upright_box);

@@ -200,42 +200,23 @@ class Assembler {
       spec.damping_n_s_m = joint.damping;
       spec.max_force_n = joint.friction;
     }
-    if (turns) set_turn(joint, spec);
+    if (!joint.leader.empty()) spec.follows = FollowSpec{plain_name(joint.leader), joint.ratio};
+    if (turns) set_stops(joint, kMostTurn_rad, 1e3, "rad", spec.low_rad, spec.high_rad);
     if (joint.type == JointType::kSlider) {
-      set_stop(joint, joint.low, spec.low_m);
-      set_stop(joint, joint.high, spec.high_m);
+      set_stops(joint, 1e3, 1e15, "m", spec.low_m, spec.high_m);
     }
     world_.joints.push_back(std::move(out));
   }
 
-  /// Stops hold within half a turn, and only two of them: an angle comes again after a turn, so
-  /// that one that is passed on its free side would be met from behind. Formats write huge numbers,
-  /// or infinity, where there is no stop.
-  void set_turn(const JointDescription& joint, JointSpec& spec) {
-    constexpr double kNone_rad = 1e3;
-    const auto leave = [&](const std::string& what) {
-      in_.left_out.add(fmt::format("{} (the hinge then turns for ever)", what), joint.name,
-                       joint.offset);
-    };
-    const auto holds = [](double stop) { return std::abs(stop) <= kMostTurn_rad; };
-    const bool has_low = holds(joint.low), has_high = holds(joint.high);
-    if (has_low && has_high) {
-      spec.low_rad = joint.low;
-      spec.high_rad = joint.high;
-    } else if (has_low || has_high) {
-      leave(fmt::format("stops of hinges whose other stop is beyond {:g} rad, or is not there",
-                        kMostTurn_rad));
-    } else if (!(std::abs(joint.low) >= kNone_rad && std::abs(joint.high) >= kNone_rad)) {
-      leave(fmt::format("stops beyond {:g} rad", kMostTurn_rad));
-    }
-  }
-
-  void set_stop(const JointDescription& joint, double value, std::optional<double>& stop) {
-    constexpr double kMost_m = 1e3, kNone_m = 1e15;
-    if (std::abs(value) <= kMost_m) {
-      stop = value;
-    } else if (!(std::abs(value) >= kNone_m)) {
-      in_.left_out.add(fmt::format("stops beyond {:g} m", kMost_m), joint.name, joint.offset);
+  /// Formats write huge numbers, or infinity, where there is no stop.
+  void set_stops(const JointDescription& joint, double most, double none, const char* unit,
+                 std::optional<double>& low, std::optional<double>& high) {
+    for (const auto& [value, stop] : {std::pair(joint.low, &low), std::pair(joint.high, &high)}) {
+      if (std::abs(value) <= most) {
+        *stop = value;
+      } else if (!(std::abs(value) >= none)) {
+        in_.left_out.add(fmt::format("stops beyond {:g} {}", most, unit), joint.name, joint.offset);
+      }
     }
   }
 

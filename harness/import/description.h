@@ -44,6 +44,9 @@ struct JointDescription {
   Eigen::Vector3d axis_W = Eigen::Vector3d::UnitX(), p_WA = Eigen::Vector3d::Zero();
   double low = 0.0, high = 0.0;  // beyond the bounds that can be expressed: none
   double damping = 0.0, friction = 0.0;
+  /// A joint that it follows: its position is `ratio` times the leader's, plus `shift`.
+  std::string leader = {};
+  double ratio = 1.0, shift = 0.0;
   std::size_t offset = 0;
 };
 

@@ -4,6 +4,9 @@
 // the joint's position. The joint's own angle counts from there on, so its stops move the other
 // way.
 //
+// Joints that follow others: the shift of a follower becomes its first position, so that both count
+// from where they are coupled, and its stops become stops of its leader.
+//
 // Links without mass between two joints (files put them there for a joint of two or three axes)
 // cannot be moved by forces. Each takes 2 % of the mass and inertia of the next link behind it that
 // has any, at the same place, so that all of it weighs the same. About the axes behind the link the
@@ -19,6 +22,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <set>
 
 namespace parallax::harness {
@@ -80,6 +85,64 @@ void set_position(Description& description, std::size_t number, double position)
   description.joints[number].high -= position;
 }
 
+/// Followers of followers follow the first of them; what would follow nothing that moves is fixed,
+/// or let go of.
+void fit_leaders(Description& description) {
+  auto& joints = description.joints;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    for (std::size_t steps = 0; !joints[i].leader.empty(); ++steps) {
+      JointDescription& joint = joints[i];
+      const auto leader =
+          std::find_if(joints.begin(), joints.end(),
+                       [&](const JointDescription& one) { return one.name == joint.leader; });
+      const bool is_sound =
+          std::isfinite(joint.shift) && std::isfinite(joint.ratio) && joint.ratio != 0.0;
+      if (joint.type == JointType::kFixed) {
+        joint.leader.clear();
+      } else if (leader == joints.end() || !is_sound || steps > joints.size()) {
+        description.left_out.add("joints that follow none that moves (they move freely)",
+                                 joint.name, joint.offset);
+        joint.leader.clear();
+      } else if (leader->type == JointType::kFixed) {
+        description.left_out.add("joints that follow one that is held fast (so are they)",
+                                 joint.name, joint.offset);
+        joint.leader.clear();
+        set_position(description, i, joint.shift);
+        joint.type = JointType::kFixed;
+      } else if (leader->leader.empty()) {
+        break;
+      } else {
+        joint.shift += joint.ratio * leader->shift;
+        joint.ratio *= leader->ratio;
+        joint.leader = leader->leader;
+      }
+    }
+  }
+}
+
+/// The stops of followers become stops of their leaders.
+void share_stops(Description& description) {
+  for (JointDescription& joint : description.joints) {
+    if (joint.leader.empty()) continue;
+    JointDescription& leader =
+        *std::find_if(description.joints.begin(), description.joints.end(),
+                      [&](const JointDescription& one) { return one.name == joint.leader; });
+    const double one = (joint.low - joint.shift) / joint.ratio,
+                 other = (joint.high - joint.shift) / joint.ratio;
+    const double low = std::max(leader.low, std::min(one, other)),
+                 high = std::min(leader.high, std::max(one, other));
+    joint.high = std::numeric_limits<double>::infinity();
+    joint.low = -joint.high;
+    if (low < high) {
+      leader.low = low;
+      leader.high = high;
+    } else {
+      description.left_out.add("stops of joints that follow others, which leave these no way",
+                               joint.name, joint.offset);
+    }
+  }
+}
+
 /// The mass behind a joint, which the links from it on can share.
 LinkDescription* mass_behind(Description& description, const std::string& link) {
   for (const JointDescription& joint : description.joints) {
@@ -112,12 +175,21 @@ std::optional<TextFault> fit_joints(const std::map<std::string, double>& positio
   std::set<std::string> unused;
   for (const auto& [name, position] : positions) unused.insert(name);
   fix_stuck(description);
+  fit_leaders(description);
+  share_stops(description);
+  std::map<std::string, double> begins;
   for (std::size_t i = 0; i < description.joints.size(); ++i) {
     const JointDescription& joint = description.joints[i];
     if (joint.type == JointType::kFixed) continue;
     const auto given = positions.find(plain_name(joint.name));
+    if (given != positions.end() && !joint.leader.empty()) {
+      return TextFault{joint.offset, fmt::format("`positions` names the joint `{}`, which follows "
+                                                 "`{}`: give that one's",
+                                                 joint.name, joint.leader)};
+    }
     if (given != positions.end()) {
       unused.erase(given->first);
+      begins[joint.name] = given->second;
       if (given->second < joint.low || given->second > joint.high) {
         return TextFault{joint.offset,
                          fmt::format("`positions` puts the joint `{}` at {:g}, beyond its stops, "
@@ -137,7 +209,15 @@ std::optional<TextFault> fit_joints(const std::map<std::string, double>& positio
         "positions 0 that are beyond the stops (the joint begins in the middle between them, and "
         "counts from there)",
         fmt::format("{}, at {:.4g}", joint.name, position), joint.offset);
+    begins[joint.name] = position;
     set_position(description, i, position);
+  }
+  for (std::size_t i = 0; i < description.joints.size(); ++i) {
+    JointDescription& joint = description.joints[i];
+    if (joint.leader.empty()) continue;
+    const double position = joint.ratio * begins[joint.leader] + joint.shift;
+    joint.shift = 0.0;
+    if (position != 0.0) set_position(description, i, position);
   }
   if (unused.empty()) return std::nullopt;
   return TextFault{0, fmt::format("`positions` names `{}`, and there is no joint of that name that "
@@ -163,6 +243,7 @@ bool fit_massless(Description& description) {
       description.left_out.add("joints of links without mass (held fast)", above->name,
                                above->offset);
       above->type = JointType::kFixed;
+      fit_leaders(description);
       fixes = true;
     }
   }

@@ -19,7 +19,8 @@ struct ImportInput {
   std::string text;
   /// Folders in which `model://NAME` is looked for, the first first. Nothing else is opened.
   std::vector<std::filesystem::path> folders;
-  Eigen::Vector3d p_WI = Eigen::Vector3d::Zero();  // where its origin is put [m]
+  std::map<std::string, std::filesystem::path> packages = {};  // folders of single ones, by name
+  Eigen::Vector3d p_WI = Eigen::Vector3d::Zero();              // where its origin is put [m]
   double yaw_rad = 0.0;
   bool fixed = false;                            // a robot's root to the world
   std::map<std::string, double> positions = {};  // of joints at first, by plain name [rad, m]

@@ -69,7 +69,9 @@ class Separator {
   }
 
   Meeting meeting(const MjcfSide& one, const MjcfSide& other) const {
-    if (excluded_.contains(std::minmax(one.body, other.body))) return Meeting::kNever;
+    if (!model_.has_contacts || excluded_.contains(std::minmax(one.body, other.body))) {
+      return Meeting::kNever;
+    }
     return meeting_of(one.masks, other.masks);
   }
 

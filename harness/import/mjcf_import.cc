@@ -78,6 +78,7 @@ class MjcfImporter {
     set_gravity();
     count_parts();
     name_links();
+    stand_on_floor();
     for (std::uint32_t i = 0; i < model_.bodies.size() && !world_.fault; ++i) add_body(i);
     for (std::uint32_t i = 1; i < model_.bodies.size() && !world_.fault; ++i) add_joints(i);
     if (world_.fault) return;
@@ -140,6 +141,28 @@ class MjcfImporter {
                                            : unused(body.name));
       X_WB_.push_back(i == 0 ? origin() : X_WB_[body.parent] * isometry_from(body.frame));
     }
+  }
+
+  bool is_level(const MjcfGeom& geom, const Eigen::Isometry3d& X_WS) const {
+    return geom.form == MjcfForm::kPlane && is_met(geom) && model_.bodies[geom.body].is_static &&
+           X_WS.linear().col(2).isApprox(Eigen::Vector3d::UnitZ(), 1e-9);
+  }
+
+  /// The highest level plane is the floor: where no plane lies at 0 and nobody has placed the
+  /// world, all of it moves until that does.
+  void stand_on_floor() {
+    std::optional<double> height_m;
+    for (const MjcfGeom& geom : model_.geoms) {
+      const Eigen::Isometry3d X_WS = X_WB_[geom.body] * isometry_from(geom.frame);
+      if (!is_level(geom, X_WS)) continue;
+      const double z = X_WS.translation().z();
+      if (std::abs(z) <= 1e-9) return;
+      height_m = std::max(height_m.value_or(z), z);
+    }
+    if (!height_m || !std::isfinite(*height_m) || input_.p_WI.z() != 0.0) return;
+    for (Eigen::Isometry3d& X : X_WB_) X.translation().z() -= *height_m;
+    leave("heights of a floor that is not at 0 (the world is moved until it is)",
+          fmt::format("{:g} m", *height_m), 0);
   }
 
   Eigen::Isometry3d origin() const {
@@ -262,8 +285,7 @@ class MjcfImporter {
   void add_plane(const MjcfGeom& geom, const std::string& name, std::size_t offset,
                  const LinkShape& shape, LinkDescription& link, const MjcfSide& side) {
     const Eigen::Isometry3d X_WS = link.X_WL * shape.X_LS;
-    const bool is_level = X_WS.linear().col(2).isApprox(Eigen::Vector3d::UnitZ(), 1e-9);
-    if (!is_level || !link.is_static || std::abs(X_WS.translation().z()) > 1e-9) {
+    if (!is_level(geom, X_WS) || std::abs(X_WS.translation().z()) > 1e-9) {
       return leave("planes that are not the floor", name, offset);
     }
     link.has_floor = out_.has_floor = true;

@@ -70,7 +70,8 @@ class Fields {
 template <typename Archive>
 void pass(Archive& archive, std::string& fault, MjcfModel& m) {
   Fields<Archive>(archive).all(fault, m.fault_line, m.fault_tag, m.gravity_m_s2, m.filters_parents,
-                               m.bodies, m.joints, m.geoms, m.meshes, m.excluded, m.rest);
+                               m.has_contacts, m.bodies, m.joints, m.geoms, m.meshes, m.excluded,
+                               m.rest);
 }
 
 class Writer {

@@ -89,6 +89,7 @@ struct MjcfModel {
   std::string fault_tag;             // of the element there, if it says so
   Eigen::Vector3d gravity_m_s2 = Eigen::Vector3d::Zero();
   bool filters_parents = true;  // a body does not collide with its parent
+  bool has_contacts = true;     // else nothing collides with anything
   std::vector<MjcfBody> bodies;
   std::vector<MjcfJoint> joints;
   std::vector<MjcfGeom> geoms;

@@ -130,6 +130,7 @@ class Translator {
     const bool falls = (model_.opt.disableflags & mjDSBL_GRAVITY) == 0;
     if (falls) out_.gravity_m_s2 = vector_at(model_.opt.gravity, 0);
     out_.filters_parents = (model_.opt.disableflags & mjDSBL_FILTERPARENT) == 0;
+    out_.has_contacts = (model_.opt.disableflags & mjDSBL_CONTACT) == 0;
     for (int i = 0; i < model_.nbody; ++i) add_body(i);
     for (int i = 0; i < model_.njnt; ++i) add_joint(i);
     for (int i = 0; i < model_.ngeom; ++i) add_geom(i);
@@ -278,7 +279,7 @@ class Translator {
     }
   }
 
-  /// Flags that are not as usual, but for gravity and parents' contacts, which are taken over.
+  /// Flags that are not as usual, but for gravity and contacts, which are taken over.
   void add_flags(const mjOption& option) {
     struct Flag {
       int bit;
@@ -287,10 +288,9 @@ class Translator {
     for (const Flag& flag :
          {Flag{mjDSBL_CONSTRAINT, "constraint"}, Flag{mjDSBL_EQUALITY, "equality"},
           Flag{mjDSBL_FRICTIONLOSS, "frictionloss"}, Flag{mjDSBL_LIMIT, "limit"},
-          Flag{mjDSBL_CONTACT, "contact"}, Flag{mjDSBL_PASSIVE, "passive"},
-          Flag{mjDSBL_CLAMPCTRL, "clampctrl"}, Flag{mjDSBL_WARMSTART, "warmstart"},
-          Flag{mjDSBL_ACTUATION, "actuation"}, Flag{mjDSBL_REFSAFE, "refsafe"},
-          Flag{mjDSBL_SENSOR, "sensor"}}) {
+          Flag{mjDSBL_PASSIVE, "passive"}, Flag{mjDSBL_CLAMPCTRL, "clampctrl"},
+          Flag{mjDSBL_WARMSTART, "warmstart"}, Flag{mjDSBL_ACTUATION, "actuation"},
+          Flag{mjDSBL_REFSAFE, "refsafe"}, Flag{mjDSBL_SENSOR, "sensor"}}) {
       if ((option.disableflags & flag.bit) != 0)
         add("parts of the engine that are switched off", "flag", flag.name);
     }

@@ -46,21 +46,26 @@ std::optional<TextFault> IncludeGate::check(const XmlOutline& outline,
 
 std::optional<std::string> IncludeGate::follow(const std::string& uri,
                                                std::vector<std::string>& around) {
-  constexpr std::string_view kScheme = "model://";
   const auto shown = uri.substr(0, 120);
-  if (!uri.starts_with(kScheme) || !is_plain_path(uri.substr(kScheme.size()))) {
-    return fmt::format("`{}` is not included: only `model://NAME` is, without `..`", shown);
+  const auto part = package_part(uri);
+  if (!part || !is_plain_path(part->name) || !(part->rest.empty() || is_plain_path(part->rest))) {
+    return fmt::format(
+        "`{}` is not included: only `model://NAME`, `package://NAME` and addresses "
+        "of Fuel are, without `..`",
+        shown);
   }
-  const std::string name = uri.substr(kScheme.size());
-  for (const fs::path& folder : folders_) {
-    const fs::path there = folder / name;
+  for (const auto& [root, package] : package_places(part->name, folders_, packages_)) {
+    const fs::path there = part->rest.empty() ? package : package / part->rest;
     if (!exists(there)) continue;
     std::error_code error;
-    if (leads_through_link(folder, there)) return fmt::format("`{}` leads through a link", shown);
+    if (leads_through_link(root, there)) return fmt::format("`{}` leads through a link", shown);
+    if (root == package || !uri.starts_with("model://")) {
+      addresses_[uri.substr(0, uri.size() - part->rest.size())] = package;
+    }
     return fs::is_directory(there, error) ? check_folder(there, shown, around)
                                           : check_file(there, shown, around);
   }
-  return fmt::format("`{}` is in none of the folders under `models`", shown);
+  return fmt::format("`{}` is in none of the folders under `models` and `packages`", shown);
 }
 
 std::optional<std::string> IncludeGate::check_folder(const fs::path& folder, const std::string& uri,

@@ -16,7 +16,9 @@ namespace parallax::harness {
 /// and what these name in turn.
 class IncludeGate {
  public:
-  explicit IncludeGate(const std::vector<std::filesystem::path>& folders) : folders_(folders) {}
+  using Packages = std::map<std::string, std::filesystem::path>;
+  IncludeGate(const std::vector<std::filesystem::path>& folders, const Packages& packages)
+      : folders_(folders), packages_(packages) {}
 
   std::optional<TextFault> check(const XmlOutline& outline) {
     std::vector<std::string> around;
@@ -24,6 +26,8 @@ class IncludeGate {
   }
   std::vector<std::string> files() const { return {files_.begin(), files_.end()}; }
   std::vector<std::string> absent() const { return {absent_.begin(), absent_.end()}; }
+  /// How the addresses that no folder answers to begin, and the folder in place of that.
+  const std::map<std::string, std::filesystem::path>& addresses() const { return addresses_; }
   /// The descriptions that are included, each with where the file itself begins to include it.
   const std::map<std::string, std::size_t>& texts() const { return texts_; }
 
@@ -38,6 +42,8 @@ class IncludeGate {
   std::optional<std::string> read(const std::filesystem::path& path, std::string& text);
 
   const std::vector<std::filesystem::path>& folders_;
+  const Packages& packages_;
+  std::map<std::string, std::filesystem::path> addresses_;
   std::set<std::string> files_, absent_;
   std::map<std::string, std::size_t> texts_;
   std::size_t here_ = 0;                                 // the outermost include

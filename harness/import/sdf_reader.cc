@@ -92,7 +92,11 @@ class SdfReader {
  public:
   SdfReader(const ImportInput& input, const XmlOutline& outline, ImportedWorld& world,
             const IncludeGate& gate)
-      : input_(input), outline_(outline), places_(outline), world_(world) {
+      : input_(input),
+        outline_(outline),
+        places_(outline),
+        world_(world),
+        addresses_(gate.addresses()) {
     list_rest(outline, kTaken, {}, out_.left_out);
     for (const auto& [text, place] : gate.texts()) {
       list_rest(
@@ -109,6 +113,7 @@ class SdfReader {
     config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
     config.SetDeprecatedElementsPolicy(sdf::EnforcementPolicy::LOG);
     for (const fs::path& folder : input_.folders) config.AddURIPath("model://", folder.string());
+    for (const auto& [address, folder] : addresses_) config.AddURIPath(address, folder.string());
     // Nothing else is searched: a file that IncludeGate did not find does not exist.
     config.SetFindCallback([](const std::string&) { return std::string(); });
     sdf::Root root;
@@ -202,8 +207,12 @@ class SdfReader {
       if (!is_fine(inner.SemanticPose().Resolve(pose))) return;
       read_model(inner, X_WM * isometry_of(pose), whole + "::", is_static || inner.Static(), group);
     }
-    for (std::uint64_t i = 0; i < model.JointCount() && !world_.fault; ++i) {
-      read_joint(*model.JointByIndex(i), X_WM, whole);
+    // Joints of types that are not taken over come last: only then is it known what others hold.
+    for (const bool is_known : {true, false}) {
+      for (std::uint64_t i = 0; i < model.JointCount() && !world_.fault; ++i) {
+        const sdf::Joint& joint = *model.JointByIndex(i);
+        if (is_taken(joint.Type()) == is_known) read_joint(joint, X_WM, whole);
+      }
     }
   }
 
@@ -289,6 +298,11 @@ class SdfReader {
     return at->HasElement("mu") ? at->Get<double>("mu") : kDefaultFriction;
   }
 
+  static bool is_taken(sdf::JointType type) {
+    return type == sdf::JointType::REVOLUTE || type == sdf::JointType::CONTINUOUS ||
+           type == sdf::JointType::PRISMATIC || type == sdf::JointType::FIXED;
+  }
+
   void read_joint(const sdf::Joint& joint, const Eigen::Isometry3d& X_WM,
                   const std::string& model) {
     JointDescription one;
@@ -306,6 +320,11 @@ class SdfReader {
     } else if (type == sdf::JointType::PRISMATIC) {
       one.type = JointType::kSlider;
     } else if (type != sdf::JointType::FIXED) {
+      const auto hangs = [&](const JointDescription& other) { return other.child == one.child; };
+      if (std::any_of(out_.joints.begin(), out_.joints.end(), hangs)) {
+        return leave("joints of other types between links that other joints hold", one.name,
+                     one.offset);
+      }
       leave("joints of other types (held fast)", one.name, one.offset);
     }
     math::Pose3d pose;
@@ -362,6 +381,7 @@ class SdfReader {
   const XmlOutline& outline_;
   NamePlaces places_;
   ImportedWorld& world_;
+  const std::map<std::string, fs::path>& addresses_;
   std::map<std::pair<std::string, std::string>, Eigen::Matrix3d> inertias_;  // that it refuses
   Eigen::Isometry3d X_WI_ = Eigen::Isometry3d::Identity();
   Description out_;
@@ -377,7 +397,7 @@ extern "C" __attribute__((visibility("default"))) bool parallax_read_sdf(const c
   const XmlOutline outline = outline_of(input.text);
   world.fault = outline.fault;
   if (world.fault) return true;
-  IncludeGate gate(input.folders);
+  IncludeGate gate(input.folders, input.packages);
   world.fault = gate.check(outline);
   world.files = gate.files();
   world.absent = gate.absent();

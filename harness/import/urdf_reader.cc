@@ -69,7 +69,8 @@ constexpr TakenOf kTaken[] = {
     {"sphere", "radius"},
     {"cylinder", "radius length"},
     {"mesh", "filename scale"},
-    {"joint", "name type", "parent child origin axis limit dynamics", "", "mimic"},
+    {"joint", "name type", "parent child origin axis limit dynamics mimic"},
+    {"mimic", "joint multiplier offset"},
     {"parent", "link"},
     {"child", "link"},
     {"axis", "xyz"},
@@ -222,7 +223,11 @@ class UrdfReader {
         one.damping = joint.dynamics->damping;
         one.friction = joint.dynamics->friction;
       }
-      if (joint.mimic) out_.left_out.add("joints that follow others", joint.name, one.offset);
+      if (joint.mimic) {
+        one.leader = joint.mimic->joint_name;
+        one.ratio = joint.mimic->multiplier;
+        one.shift = joint.mimic->offset;
+      }
     }
     out_.joints.push_back(std::move(one));
   }

@@ -39,7 +39,8 @@ Arm::Arm(const WorldSpec& world_spec, const ArmSpec& spec, std::uint32_t gripper
       finger_joint_(*world.layout().find_slider(spec.finger_joint)),
       palm_(*world.layout().find_body(spec.palm_body)),
       jaws_(spec, world),
-      bodies_(linked_with(world.layout(), {palm_, *world.layout().find_body(spec.far_pad_body)})) {}
+      bodies_(linked_with(world.layout(), {palm_, *world.layout().find_body(spec.near_pad_body),
+                                           *world.layout().find_body(spec.far_pad_body)})) {}
 
 void Arm::reset() {
   std::visit([](auto& carrier) { carrier.reset(); }, carrier_);
@@ -80,7 +81,7 @@ void Arm::open_to(double opening_m, const Motion& motion) {
 }
 
 void Arm::squeeze(double force_n, double speed_m_s) {
-  finger_force_n_ = force_n;
+  finger_force_n_ = force_n * jaws_.gain();
   finger_.push(jaws_.closing_sign() * speed_m_s, kFingerAcceleration_m_s2);
 }
 

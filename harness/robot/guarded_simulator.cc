@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "compiler/base/words.h"
-#include "harness/engine/mujoco_module.h"
+#include "harness/engine/engine_module.h"
 #include "harness/engine/world_check.h"
 
 namespace parallax::harness {
@@ -20,7 +20,7 @@ WorldSpec with_step_divided(WorldSpec spec, double by) {
 
 std::optional<WorldSpec> with_other_engine(WorldSpec spec) {
   spec.engine = spec.engine == EngineKind::kOde ? EngineKind::kMujoco : EngineKind::kOde;
-  if (spec.engine == EngineKind::kMujoco && !has_mujoco()) return std::nullopt;
+  if (!has_engine(spec.engine)) return std::nullopt;
   if (!check_world(spec).empty()) return std::nullopt;
   return spec;
 }

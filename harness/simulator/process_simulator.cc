@@ -19,7 +19,6 @@
 #include "compiler/base/contract.h"
 #include "compiler/base/subprocess.h"
 #include "harness/simulator/error_tail.h"
-#include "harness/simulator/process_memory.h"
 #include "harness/simulator/protocol.h"
 #include "harness/simulator/protocol_check.h"
 
@@ -91,6 +90,7 @@ void ChildProcess::start(const std::vector<std::string>& command) {
     return;
   }
   pid_ = child.pid;
+  if (memory_mb_ != 0) memory_.emplace(pid_);
   input_ = std::move(input.write);
   output_ = std::move(output.read);
   errors_ = std::move(errors.read);
@@ -121,9 +121,9 @@ bool ChildProcess::poll_once(short output_events, Clock::time_point deadline) {
 }
 
 bool ChildProcess::holds_too_much() {
-  if (memory_mb_ == 0 || Clock::now() < memory_seen_ + kMemorySlice) return false;
+  if (!memory_ || Clock::now() < memory_seen_ + kMemorySlice) return false;
   memory_seen_ = Clock::now();
-  return memory_of_session(pid_) > base::bytes_of_mb(memory_mb_);
+  return memory_->bytes() > base::bytes_of_mb(memory_mb_);
 }
 
 bool ChildProcess::write_line(std::string_view line, Clock::time_point deadline) {

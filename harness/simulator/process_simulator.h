@@ -16,6 +16,7 @@
 #include "compiler/base/descriptor.h"
 #include "harness/simulator/pose_intake.h"
 #include "harness/simulator/process_limits.h"
+#include "harness/simulator/process_memory.h"
 #include "harness/simulator/protocol.h"
 #include "harness/simulator/simulator.h"
 
@@ -70,6 +71,7 @@ class ChildProcess {
   base::Descriptor input_, output_, errors_;
   std::int64_t memory_mb_;
   Clock::time_point memory_seen_ = Clock::now();
+  std::optional<SessionMemory> memory_;  // none: nothing bounds it, or there is no process
   const std::atomic<bool>* stop_;
   std::string start_error_;
   std::string buffer_;      // read from standard output, not yet returned

@@ -164,7 +164,8 @@ std::optional<ArgumentFault> wrong_effort(const ControllerSpec& spec, const Stat
                                 [&](const ArmSpec& one) { return one.name == name_of("arm"); });
   const auto finger = arm == arms.end() ? std::nullopt : layout.find_slider(arm->finger_joint);
   if (!finger) return std::nullopt;
-  const double most = layout.sliders[*finger].max_force_n;
+  const double most = layout.sliders[*finger].max_force_n /
+                      grip_gain(layout, arm->finger_joint, arm->near_pad_body);
 
   const auto said = given.find("effort_n");
   if (said != given.end()) {

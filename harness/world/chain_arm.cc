@@ -95,6 +95,9 @@ bool check_chain_joint(const std::string& path, const JointSpec& joint, ProblemL
     problems.add(path, fmt::format("`{}` is no hinge or slider", joint.name));
     return false;
   }
+  if (joint.follows) {
+    problems.add(path, fmt::format("`{}` follows `{}`", joint.name, joint.follows->leader));
+  }
   if (!(hinge ? joint.max_torque_nm > 0.0 : joint.max_force_n > 0.0)) {
     problems.add(path, fmt::format("`{}` has no motor: {} is 0", joint.name,
                                    hinge ? "max_torque_nm" : "max_force_n"));

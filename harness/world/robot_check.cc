@@ -31,11 +31,14 @@ class RoleChecker {
   }
 
   /// A squeeze is no stronger than the motor of the finger.
-  void check_grip_force(const std::string& path, double force_n, const std::string& finger) {
+  void check_grip_force(const std::string& path, double force_n, const std::string& finger,
+                        const std::string& near_pad) {
     const JointSpec* joint = joint_named(finger);
-    if (joint == nullptr || joint->max_force_n <= 0.0 || force_n <= joint->max_force_n) return;
-    add(path, fmt::format("is {:g} N, more than the {:g} N (max_force_n) of `{}`", force_n,
-                          joint->max_force_n, finger));
+    if (joint == nullptr || joint->max_force_n <= 0.0) return;
+    const double most = joint->max_force_n / grip_gain(layout_, finger, near_pad);
+    if (force_n <= most) return;
+    add(path, fmt::format("is {:g} N, more than the {:g} N (max_force_n) of `{}`", force_n, most,
+                          finger));
   }
 
   std::uint32_t assembly(const std::string& body) const {
@@ -63,7 +66,8 @@ class LineRobotChecker final : RoleChecker {
     problems_.require_name("robot/near_pad_body", body_names_, "body", robot.near_pad_body);
     problems_.require_name("robot/far_pad_body", body_names_, "body", robot.far_pad_body);
     problems_.require_positive("robot/grip_force_n", robot.grip_force_n);
-    check_grip_force("robot/grip_force_n", robot.grip_force_n, robot.finger_joint);
+    check_grip_force("robot/grip_force_n", robot.grip_force_n, robot.finger_joint,
+                     robot.near_pad_body);
     problems_.require_positive("robot/opening_m", robot.opening_m);
     if (problems_.empty()) check_one_machine();
   }
@@ -165,7 +169,7 @@ class MobileRobotChecker final : RoleChecker {
     problems_.require_name(path + "/far_pad_body", body_names_, "body", arm.far_pad_body);
     problems_.require(arm.opening_m > 0.0, path + "/opening_m", "is not positive");
     problems_.require(arm.grip_force_n > 0.0, path + "/grip_force_n", "is not positive");
-    check_grip_force(path + "/grip_force_n", arm.grip_force_n, arm.finger_joint);
+    check_grip_force(path + "/grip_force_n", arm.grip_force_n, arm.finger_joint, arm.near_pad_body);
     if (!arm.chain.empty()) return;
     problems_.require(arm.max_reach_m > arm.min_reach_m && arm.min_reach_m >= 0.0,
                       path + "/reach_m", "is empty");

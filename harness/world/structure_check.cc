@@ -239,6 +239,25 @@ class StructureChecker {
     } else {
       check_stops(path + "/range_m", joint);
     }
+    if (joint.follows) check_follows(path + "/follows", *joint.follows);
+  }
+
+  void check_follows(const std::string& path, const FollowSpec& follows) {
+    constexpr double kLeastRatio = 1e-3, kMostRatio = 1e3;
+    problems_.require_name(path + "/joint", joint_names_, "joint", follows.leader);
+    const double size = std::abs(follows.ratio);
+    if (!(size >= kLeastRatio && size <= kMostRatio)) {
+      add(path + "/ratio", fmt::format("is {:g}, not between {:g} and {:g} in size", follows.ratio,
+                                       kLeastRatio, kMostRatio));
+    }
+    const auto leader = std::find_if(spec_.joints.begin(), spec_.joints.end(),
+                                     [&](const JointSpec& j) { return j.name == follows.leader; });
+    if (leader == spec_.joints.end()) return;
+    if (leader->type != JointType::kSlider && leader->type != JointType::kHinge) {
+      add(path + "/joint", fmt::format("`{}` is no slider or hinge", follows.leader));
+    } else if (leader->follows) {
+      add(path + "/joint", fmt::format("`{}` follows another joint itself", follows.leader));
+    }
   }
 
   void check_suspension(const std::string& path, const JointSpec& joint) {
@@ -264,8 +283,8 @@ class StructureChecker {
     } else if (low > 0.0 || high < 0.0) {
       add(range, "excludes 0, the default placement");
     } else if (!(low >= -kMostTurn_rad && high <= kMostTurn_rad)) {
-      add(range, fmt::format("goes beyond {0:g} rad, up to which stops hold; without stops "
-                             "a hinge turns for ever",
+      add(range, fmt::format("goes beyond {:g} rad, about two turns; without stops a hinge turns "
+                             "for ever",
                              kMostTurn_rad));
     }
   }
@@ -337,6 +356,9 @@ class StructureChecker {
     }
     problems_.require(joint.low_rad && joint.high_rad, path,
                       "is on a hinge that turns for ever: a door has stops (`range_rad`)");
+    if (counts_turns(joint)) {
+      add(path, fmt::format("is on a hinge that turns farther than {:g} rad", kHalfTurn_rad));
+    }
     const Eigen::Vector3d axis = joint.axis_W.normalized();
     if (axis.head<2>().norm() > kUpright) {
       return add(path, "is on a hinge that leans: hands turn about the vertical alone");

@@ -259,6 +259,29 @@ std::optional<HingeId> WorldLayout::find_hinge(std::string_view name) const {
   return find_by_name(hinges, name);
 }
 
+bool WorldLayout::leads(std::string_view joint) const {
+  const auto follows = [&](const JointSpec& one) {
+    return one.follows && one.follows->leader == joint;
+  };
+  return std::any_of(sliders.begin(), sliders.end(), follows) ||
+         std::any_of(hinges.begin(), hinges.end(), follows);
+}
+
+double grip_gain(const WorldLayout& layout, std::string_view finger_joint,
+                 std::string_view near_pad) {
+  const auto finger = layout.find_slider(finger_joint);
+  const auto pad = layout.find_body(near_pad);
+  if (!finger || !pad) return 1.0;
+  for (const JointSpec& joint : layout.sliders) {
+    if (!joint.follows || joint.follows->leader != finger_joint) continue;
+    const BodyId child = *layout.find_body(joint.child);
+    if (layout.link_of[child.index()] != layout.link_of[pad->index()]) continue;
+    const double along = joint.axis_W.normalized().dot(layout.sliders[*finger].axis_W.normalized());
+    return 1.0 - joint.follows->ratio * along;
+  }
+  return 1.0;
+}
+
 std::vector<Parameter> joint_parameters(const JointSpec& joint) {
   std::vector<Parameter> all = {{joint.name + ".q", joint.type == JointType::kHinge ? "rad" : "m"}};
   for (const char* item : {".x", ".y", ".z"}) all.push_back({joint.child + item, "m"});

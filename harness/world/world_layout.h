@@ -60,6 +60,8 @@ struct WorldLayout {
   std::optional<SliderId> find_slider(std::string_view name) const;
   std::optional<GantryId> find_gantry(std::string_view name) const;
   std::optional<HingeId> find_hinge(std::string_view name) const;
+  /// Does any joint follow this one?
+  bool leads(std::string_view joint) const;
   /// Can the two never touch?
   bool never_collide(BodyId a, BodyId b) const {
     const auto of_a = assembly_of[a.index()];
@@ -74,6 +76,11 @@ struct Placement {
   double yaw_rad = 0.0;
   double mass_kg = 0.0;  // of a free body; 0: as specified
 };
+
+/// How far the pads of a gripper come together for each metre that its finger moves: 1, or, where
+/// the near pad follows the finger, as far as both go.
+double grip_gain(const WorldLayout& layout, std::string_view finger_joint,
+                 std::string_view near_pad);
 
 /// A flag for each BodyId.
 using BodyMask = std::vector<bool>;

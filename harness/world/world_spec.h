@@ -82,7 +82,10 @@ struct BodySpec {
 /// the child about the axis through p_WA; without stops it turns for ever.
 enum class JointType : std::uint8_t { kSlider, kFixed, kGantry, kHinge };
 
-inline constexpr double kMostTurn_rad = 3.1;  // of a hinge from its default, where it has stops
+/// How far a stop of a hinge may lie from its default: two turns, so that degrees are noticed.
+inline constexpr double kMostTurn_rad = 13.0;
+/// Up to here an angle says by itself which turn it belongs to, even where a stop gives a little.
+inline constexpr double kHalfTurn_rad = 3.1;
 
 /// Where a gripper takes hold of the child of a slider or a hinge to move it; at its default
 /// placement. What a hinge turns takes the directions along.
@@ -99,6 +102,13 @@ struct HandleSpec {
 struct SuspensionSpec {
   double stiffness_n_m = 0.0, damping_n_s_m = 0.0;
   double stiffness_nm_rad = 0.0, damping_nm_s = 0.0;
+};
+
+/// A joint that another one leads: its position is `ratio` times that of the leader, and what
+/// pushes the one is felt by the other.
+struct FollowSpec {
+  std::string leader;  // a slider or hinge that follows none itself
+  double ratio = 1.0;  // in the units of both joints
 };
 
 /// Position 0 is the default placement; positive moves the child along axis_W, or turns it about
@@ -118,7 +128,16 @@ struct JointSpec {
   double damping_nm_s = 0.0;                       // of a hinge, per rad
   std::optional<HandleSpec> handle;
   std::optional<SuspensionSpec> suspension;  // of a gantry of the world
+  std::optional<FollowSpec> follows;         // of a slider or hinge
 };
+
+/// Can a hinge with stops pass half a turn? Then its turns are counted; the angle of one without
+/// stops lies within half a turn.
+inline bool counts_turns(const JointSpec& hinge) {
+  if (!hinge.low_rad && !hinge.high_rad) return false;
+  return hinge.low_rad.value_or(-kMostTurn_rad) < -kHalfTurn_rad ||
+         hinge.high_rad.value_or(kMostTurn_rad) > kHalfTurn_rad;
+}
 
 /// Coulomb friction by pair of materials; the key is sorted ("box", "pad").
 struct FrictionSpec {
@@ -218,8 +237,8 @@ struct MobileRobotSpec {
 };
 
 /// The engine that steps a world.
-enum class EngineKind : std::uint8_t { kOde, kMujoco };
-inline constexpr auto kEngineWords = base::word_table<EngineKind>("ode", "mujoco");
+enum class EngineKind : std::uint8_t { kOde, kMujoco, kBullet };
+inline constexpr auto kEngineWords = base::word_table<EngineKind>("ode", "mujoco", "bullet");
 constexpr std::string_view to_string(EngineKind kind) { return kEngineWords.of(kind); }
 
 /// Everything the engine needs; pure data, read from the scenario's `world` section.

@@ -119,7 +119,7 @@ class LoggedSolver final : public SatSolver {
   std::vector<Literal> assumed_, clause_;
 };
 
-base::Status write_formula(const CompletenessClaim& claim, const ProofFiles& files,
+base::Status write_formula(const ProofClaim& claim, const ProofFiles& files,
                            base::DiagnosticSink& sink) {
   errno = 0;
   std::ofstream out(files.formula_part(), std::ios::binary | std::ios::trunc);
@@ -130,7 +130,7 @@ base::Status write_formula(const CompletenessClaim& claim, const ProofFiles& fil
                           std::strerror(errno != 0 ? errno : ENOSPC));
 }
 
-SolveStatus write_proof(const CompletenessClaim& claim, const ProofFiles& files,
+SolveStatus write_proof(const ProofClaim& claim, const ProofFiles& files,
                         const ProofLimits& limits) {
   const auto solver = make_proving_solver(files.proof(), ProofForm::kBinary, limits.stop);
   claim.for_each_clause(
@@ -152,7 +152,7 @@ ProofReport check_log(const ProofFiles& files, ProofLimits limits) {
 }
 
 /// Makes the proof and has it checked.
-ProofReport make_proof(const CompletenessClaim& claim, ProofFiles& files, const ProofLimits& limits,
+ProofReport make_proof(const ProofClaim& claim, ProofFiles& files, const ProofLimits& limits,
                        base::DiagnosticSink& sink) {
   if (!files.restart(sink)) return {ProofVerdict::kNotFinished, {}, {}};
   switch (write_proof(claim, files, limits)) {
@@ -304,21 +304,25 @@ void CompletenessClaim::for_each_clause(const Visit& visit) const {
   visit_traces(visit);
 }
 
-void CompletenessClaim::write_dimacs(std::ostream& out) const {
-  std::int64_t clauses = 0;
-  for_each_clause([&](std::span<const Literal>) { ++clauses; });
-  out << fmt::format(
+std::string CompletenessClaim::comment() const {
+  auto out = fmt::format(
       "c No model: these are all traces of the model up to timepoint {}.\n"
       "c First its {} clauses, at the end {} for the traces that were listed.\n",
       model_.horizon, model_.clauses.size(), traces_.size());
   for (const auto& source : model_.sources) {
-    out << fmt::format("c source {} {:016x}\n", base::printable(source.name), source.hash);
+    out += fmt::format("c source {} {:016x}\n", base::printable(source.name), source.hash);
   }
   for (const auto& observable : observables_) {
-    out << fmt::format("c map {} {}({},{})\n", observable.literal.dimacs(),
+    out += fmt::format("c map {} {}({},{})\n", observable.literal.dimacs(),
                        compiler::to_string(observable.kind), observable.name, observable.time);
   }
-  out << fmt::format("p cnf {} {}\n", variables_, clauses);
+  return out;
+}
+
+void ProofClaim::write_dimacs(std::ostream& out) const {
+  std::int64_t clauses = 0;
+  for_each_clause([&](std::span<const Literal>) { ++clauses; });
+  out << comment() << fmt::format("p cnf {} {}\n", variables(), clauses);
   std::string text;
   const auto write = [&] {
     if (out) out << text;
@@ -402,7 +406,7 @@ std::unique_ptr<SatSolver> make_logged_solver(std::FILE* proof, const Completene
   return std::make_unique<LoggedSolver>(proof, claim, stop);
 }
 
-Certificate prove(const CompletenessClaim& claim, ProofFiles& files, const ProofLimits& limits,
+Certificate prove(const ProofClaim& claim, ProofFiles& files, const ProofLimits& limits,
                   base::DiagnosticSink& sink, bool logged) {
   if (!write_formula(claim, files, sink)) return {};
   const auto log = logged ? check_log(files, limits) : ProofReport{};

@@ -20,6 +20,20 @@
 
 namespace parallax::runtime {
 
+/// A formula that has no model if what it claims is true.
+class ProofClaim {
+ public:
+  virtual ~ProofClaim() = default;
+  virtual std::int64_t variables() const = 0;
+  using Visit = std::function<void(std::span<const compiler::Literal>)>;
+  /// Visits the same clauses in the same order each time.
+  virtual void for_each_clause(const Visit& visit) const = 0;
+  /// `c` lines that say what is claimed.
+  virtual std::string comment() const = 0;
+  /// Returns when the stream fails.
+  void write_dimacs(std::ostream& out) const;
+};
+
 /// "The model has no trace but these", as a formula that has no model if that is true: the clauses
 /// of the compiled model and one blocking clause for every trace.
 ///
@@ -28,7 +42,7 @@ namespace parallax::runtime {
 /// and of what performs returned, up to the first hit, in a valuation of the full horizon. Then the
 /// formula also chooses a length, by variables beyond those of the model: `ends` n implies that the
 /// constraints hold at n and not before; a blocking clause binds the length that its trace has.
-class CompletenessClaim {
+class CompletenessClaim final : public ProofClaim {
  public:
   /// `model` outlives the claim.
   explicit CompletenessClaim(const CompiledModel& model);
@@ -39,13 +53,12 @@ class CompletenessClaim {
   void add(const Trace& trace);
   std::int64_t traces() const { return static_cast<std::int64_t>(traces_.size()); }
 
-  std::int64_t variables() const { return variables_; }
+  std::int64_t variables() const override { return variables_; }
   /// Literals that a search for traces may assume: the claim is about the whole horizon.
   std::vector<compiler::Literal> given() const;
-  using Visit = std::function<void(std::span<const compiler::Literal>)>;
-  void for_each_clause(const Visit& visit) const;
-  /// With comments that name the variables of observable atoms. Returns when the stream fails.
-  void write_dimacs(std::ostream& out) const;
+  void for_each_clause(const Visit& visit) const override;
+  /// Names the variables of observable atoms.
+  std::string comment() const override;
 
  private:
   struct Observable {
@@ -146,7 +159,7 @@ struct Certificate {
 /// none, a solver that starts afresh makes the proof. The files are kept if a proof is accepted.
 /// Reports kFileNotWritable; kProofRejected, also where the solver finds a further trace;
 /// kProofNotChecked if solver or checker were stopped.
-Certificate prove(const CompletenessClaim& claim, ProofFiles& files, const ProofLimits& limits,
+Certificate prove(const ProofClaim& claim, ProofFiles& files, const ProofLimits& limits,
                   base::DiagnosticSink& sink, bool logged = false);
 
 }  // namespace parallax::runtime

@@ -61,6 +61,13 @@ class TypedText {
         return "[" + names(f.variables) + "]" + formula(f.children[0]);
       case FormulaKind::kExists:
         return "{" + names(f.variables) + "}" + formula(f.children[0]);
+      case FormulaKind::kAggregate: {
+        static constexpr const char* kOps[] = {"=", "!=", "<", "<=", ">", ">="};
+        const auto weight = f.terms.size() == 2 ? term(f.terms[1]) + ":" : std::string();
+        return (weight.empty() ? "count{" : "sum{") + names(f.variables) + ":" + weight +
+               formula(f.children[0]) + "}" + kOps[static_cast<std::size_t>(f.compare)] +
+               term(f.terms[0]);
+      }
       case FormulaKind::kTemporal:
         return joined(f, " temporal ");
     }

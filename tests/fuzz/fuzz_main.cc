@@ -24,6 +24,7 @@ struct FuzzOptions {
   bool compat = false;
   bool effect_constraints = false;
   bool exclusions = false;
+  bool aggregates = false;
   bool bodies = false;
   bool print = false;
   bool no_shrink = false;
@@ -142,10 +143,11 @@ int fuzz(const FuzzOptions& options) {
   for (std::uint64_t i = 0; i < options.count; ++i) {
     const auto seed = options.seed + i;
     const bool large = is_large(options, seed);
-    const auto model = options.bodies
-                           ? random_bodies(seed)
-                           : random_model(seed, large ? kSolverSize : kBruteForceSize,
-                                          options.effect_constraints, options.exclusions);
+    const auto model =
+        options.bodies
+            ? random_bodies(seed)
+            : random_model(seed, large ? kSolverSize : kBruteForceSize,
+                           {options.effect_constraints, options.exclusions, options.aggregates});
     if (options.print) {
       fmt::print("{}", model.print());
       continue;
@@ -185,6 +187,7 @@ int run(int argc, char** argv) {
              "Add effect axioms whose conditions mention effects to every model");
   table.flag("--exclusions", options.exclusions,
              "Add events of unequal numbers of arguments and a mutex or xor over them");
+  table.flag("--aggregates", options.aggregates, "Put counts and sums into every model");
   table.flag("--bodies", options.bodies,
              "Models of bodies that go from place to place, with preconditions and collisions");
   table.flag("--print", options.print, "Print the models instead of comparing");

@@ -119,6 +119,7 @@ class OldEncoder : OldTerms {
       return made;
     };
     switch (formula.kind) {
+      case FormulaKind::kAggregate:  // refused
       case FormulaKind::kTemporal:
         break;
       case FormulaKind::kTrue:

@@ -175,9 +175,9 @@ RandomFormula RandomFormulas::atom() {
   return {text ? *text : "1<2", {}};
 }
 
-RandomFormula RandomFormulas::quantified(int depth) {
+/// One or two, entered.
+std::string RandomFormulas::new_variables() {
   std::string variables;
-  const auto before = scope_.size();
   const auto count = 1 + (random_.chance(25) ? 1U : 0U);
   for (std::size_t i = 0; i < count; ++i) {
     const auto name = enter(any_sort());
@@ -187,13 +187,46 @@ RandomFormula RandomFormulas::quantified(int depth) {
     }
     variables += (variables.empty() ? "" : ",") + name;
   }
+  return variables;
+}
+
+RandomFormula RandomFormulas::quantified(int depth) {
+  const auto before = scope_.size();
+  const auto variables = new_variables();
   auto body = formula(depth - 1);
   scope_.resize(before);
   const auto head = random_.chance(45) ? "[" + variables + "]" : "{" + variables + "}";
   return {head, {std::move(body)}};
 }
 
+std::string RandomFormulas::number(const std::vector<std::string>& numbers,
+                                   std::size_t variable_percent) {
+  if (!random_.chance(variable_percent)) return random_.pick(numbers);
+  std::vector<std::string> fitting;
+  for (const auto& name : scope_) {
+    if (schema_.is_integer(sort_of(name)) || sort_of(name) == "time") fitting.push_back(name);
+  }
+  if (fitting.empty()) return random_.pick(numbers);
+  return random_.pick(fitting) +
+         (random_.chance(30) ? random_.pick(std::vector<std::string>{"-1", "+1", "*2"}) : "");
+}
+
+RandomFormula RandomFormulas::aggregate(int depth) {
+  static const std::vector<std::string> kSigns = {">=", "<=", "=", "<", ">", "!="};
+  static const std::vector<std::string> kMirrored = {"<=", ">=", "=", ">", "<", "!="};
+  const auto limit = number({"0", "1", "1", "2", "2", "3", "-1"}, 15);
+  const auto before = scope_.size();
+  auto head = (random_.chance(60) ? "count{" : "sum{") + new_variables() + ": ";
+  if (head[0] == 's') head += number({"1", "2", "3", "-1", "-2", "0"}, 40) + ": ";
+  auto body = formula(depth - 1);
+  scope_.resize(before);
+  const auto sign = random_.below(kSigns.size());
+  if (random_.chance(15)) return {limit + kMirrored[sign] + head, {std::move(body)}, "}"};
+  return {head, {std::move(body)}, "}" + kSigns[sign] + limit};
+}
+
 RandomFormula RandomFormulas::formula(int depth) {
+  if (aggregates_ && depth > 0 && random_.chance(25)) return aggregate(depth);
   const auto roll = depth <= 0 ? 99 : random_.below(100);
   if (roll < 10) return {"!", {formula(depth - 1)}};
   if (roll < 62) {

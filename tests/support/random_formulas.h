@@ -11,8 +11,8 @@ namespace parallax::test {
 /// Random terms and formulas over a schema. Variables in scope are named by their sorts.
 class RandomFormulas {
  public:
-  RandomFormulas(FuzzRandom& random, const RandomSchema& schema)
-      : random_(random), schema_(schema) {}
+  RandomFormulas(FuzzRandom& random, const RandomSchema& schema, bool aggregates = false)
+      : random_(random), schema_(schema), aggregates_(aggregates) {}
 
   /// The variables in scope, innermost last.
   std::vector<std::string>& scope() { return scope_; }
@@ -31,6 +31,8 @@ class RandomFormulas {
   /// Connectives and quantifiers at most `depth` deep.
   RandomFormula formula(int depth);
   RandomFormula atom();
+  /// `count{..: formula}` or `sum{..: weight: formula}`, compared with a number or a variable.
+  RandomFormula aggregate(int depth);
   /// Happens(.., time) for a random event and time term; an atom over `time` where there is none.
   RandomFormula occurrence();
 
@@ -41,10 +43,13 @@ class RandomFormulas {
   std::optional<std::string> arithmetic(const std::string& sort, int depth);
   std::optional<std::string> variable(const std::string& sort);
   RandomFormula quantified(int depth);
+  std::string new_variables();
+  std::string number(const std::vector<std::string>& numbers, std::size_t variable_percent);
   std::string moment_near(const std::string& moment);
 
   FuzzRandom& random_;
   const RandomSchema& schema_;
+  const bool aggregates_;
   enum class Look { kNow, kAhead, kBack, kAnywhere };
   std::vector<std::string> scope_;
   Look look_ = Look::kNow;

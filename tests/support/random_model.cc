@@ -11,8 +11,11 @@ namespace {
 
 class ModelMaker {
  public:
-  ModelMaker(FuzzRandom& random, RandomSchema schema, bool large)
-      : random_(random), schema_(std::move(schema)), formulas_(random, schema_), large_(large) {}
+  ModelMaker(FuzzRandom& random, RandomSchema schema, bool large, bool aggregates)
+      : random_(random),
+        schema_(std::move(schema)),
+        formulas_(random, schema_, aggregates),
+        large_(large) {}
 
   std::vector<RandomStatement> make() {
     statements_ = schema_.statements;
@@ -32,6 +35,26 @@ class ModelMaker {
     statements_.clear();
     const auto count = 1 + random_.below(3);
     for (std::size_t i = 0; i < count; ++i) effect_constraint();
+    return std::move(statements_);
+  }
+
+  /// Must be called after the rest: an aggregate alone, or as a condition, or as a consequence.
+  std::vector<RandomStatement> make_aggregates() {
+    statements_.clear();
+    const auto count = 1 + random_.below(2);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto quantifier = open(random_.chance(70));
+      auto sum = formulas_.aggregate(1);
+      const auto roll = random_.below(100);
+      if (roll < 30) {
+        sum = {"->", {std::move(sum), formulas_.occurrence()}};
+      } else if (roll < 60) {
+        sum = under_condition(std::move(sum), 50);
+      } else if (roll < 75) {
+        if (auto head = effect()) sum = {"->", {std::move(sum), *std::move(head)}};
+      }
+      state(closed(quantifier, std::move(sum)), 20);
+    }
     return std::move(statements_);
   }
 
@@ -328,7 +351,7 @@ std::uint64_t FuzzRandom::next() {
 
 std::string RandomFormula::print() const {
   if (parts.empty()) return text;
-  if (parts.size() == 1) return text + "(" + parts[0].print() + ")";
+  if (parts.size() == 1) return text + "(" + parts[0].print() + ")" + tail;
   return "(" + parts[0].print() + ") " + text + " (" + parts[1].print() + ")";
 }
 
@@ -346,8 +369,8 @@ std::string RandomModel::print() const {
   return text;
 }
 
-RandomModel random_model(std::uint64_t seed, const ModelSize& size, bool effect_constraints,
-                         bool exclusions) {
+RandomModel random_model(std::uint64_t seed, const ModelSize& size,
+                         const RandomAdditions& additions) {
   FuzzRandom random(seed);
   const bool large = size.most > kBruteForceSize.most;
   RandomModel model;
@@ -356,18 +379,14 @@ RandomModel random_model(std::uint64_t seed, const ModelSize& size, bool effect_
     auto schema = random_schema(random, large);
     model.atoms = schema.atoms();
     if (model.atoms < size.least || model.atoms > size.most) continue;
-    ModelMaker maker(random, std::move(schema), large);
+    ModelMaker maker(random, std::move(schema), large, additions.aggregates);
     model.statements = maker.make();
-    if (effect_constraints) {
-      for (auto& statement : maker.make_effect_constraints()) {
-        model.statements.push_back(std::move(statement));
-      }
-    }
-    if (exclusions) {
-      for (auto& statement : maker.make_exclusion()) {
-        model.statements.push_back(std::move(statement));
-      }
-    }
+    const auto add = [&](std::vector<RandomStatement> more) {
+      for (auto& statement : more) model.statements.push_back(std::move(statement));
+    };
+    if (additions.effect_constraints) add(maker.make_effect_constraints());
+    if (additions.exclusions) add(maker.make_exclusion());
+    if (additions.aggregates) add(maker.make_aggregates());
     return model;
   }
 }

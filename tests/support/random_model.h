@@ -25,10 +25,12 @@ class FuzzRandom {
 };
 
 /// A formula as a tree that can be printed and made smaller: a leaf's text, or an operator
-/// (`!`, `&`, `|`, `->`, `<->`, a quantifier such as `[time]`) over its parts.
+/// (`!`, `&`, `|`, `->`, `<->`, a quantifier such as `[time]`) over its parts; an aggregate is
+/// `count{time: ` in front of its part and `}>=2` behind it.
 struct RandomFormula {
   std::string text;
   std::vector<RandomFormula> parts;
+  std::string tail = {};
   std::string print() const;
 };
 
@@ -56,15 +58,23 @@ struct ModelSize {
 inline constexpr ModelSize kBruteForceSize{1, 16};
 inline constexpr ModelSize kSolverSize{20, 60};
 
-/// A model in which any construct of the language may occur: subsorts, ranges, nested reified
-/// sorts, functions, every connective, quantifiers over empty sorts, fluents and events, time
-/// arithmetic, completion with and without label, releases, noninertial and manualrelease fluents,
-/// trajectories, definitions over effects, mutex and xor. Well-sorted by construction; it may
-/// still be refused because a formula is false or says nothing. The same seed gives the same model;
-/// with `effect_constraints` effect axioms whose conditions mention effects are added to it, which
-/// may be refused because an effect depends on its own absence. With `exclusions` a statement of
-/// mutex or xor is added, over new events or fluents of unequal numbers of arguments of one sort.
-RandomModel random_model(std::uint64_t seed, const ModelSize& size, bool effect_constraints = false,
-                         bool exclusions = false);
+/// Constructs that models have only on demand.
+struct RandomAdditions {
+  /// Effect axioms whose conditions mention effects; an effect may depend on its own absence.
+  bool effect_constraints = false;
+  /// A statement of mutex or xor over new events or fluents of unequal numbers of arguments.
+  bool exclusions = false;
+  /// Formulas with counts and sums of every kind, at every place that a formula may have.
+  bool aggregates = false;
+};
+
+/// A model in which all other constructs of the language may occur: subsorts, ranges, nested
+/// reified sorts, functions, every connective, quantifiers over empty sorts, fluents and events,
+/// time arithmetic, completion with and without label, releases, noninertial and manualrelease
+/// fluents, trajectories, definitions over effects, mutex and xor. Well-sorted by construction; it
+/// may still be refused because a formula is false or says nothing. The same seed gives the same
+/// model.
+RandomModel random_model(std::uint64_t seed, const ModelSize& size,
+                         const RandomAdditions& additions = {});
 
 }  // namespace parallax::test

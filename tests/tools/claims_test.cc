@@ -78,7 +78,7 @@ TEST_CASE("bounds of rates are rounded outwards, with digits enough") {
 TEST_CASE("interrupted rates have intervals that hold whenever they end") {
   const Coin cli;
   cli.coin(0.3, "seeded");
-  const std::vector<std::string> words = {"rates",        "coin.yaml", "--runs",          "1000000",
+  const std::vector<std::string> words = {"rates",        "coin.yaml", "--runs",          "100000",
                                           "--time-limit", "1",         "--allow-commands"};
   const auto text = cli.parallax(words);
   CHECK(text.code == 4);

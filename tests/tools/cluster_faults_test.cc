@@ -19,7 +19,8 @@ std::vector<std::string> with(std::vector<std::string> words,
 
 TEST_CASE("a campaign with workers that fail is that of one machine, byte for byte") {
   const Cluster here, there;
-  const std::vector<std::string> run = {"run", "scenario.yaml", "--record", "all", "--out", "out"};
+  const std::vector<std::string> run = {"run",      "scenario.yaml", "--epsilon", "0.1",
+                                        "--record", "all",           "--out",     "out"};
   CHECK(here.parallax(run).code == 0);
   const auto found =
       there.parallax(with(with(run, {"--launcher", Cluster::unruly(), "--jobs", "4"}), kBriefly));

@@ -40,6 +40,23 @@ class Cluster : public CliFixture {
     return "sh " + name;
   }
 
+  /// A launcher whose worker greets as `own` does and answers nothing more until a worker has
+  /// greeted as `other`: so both take part, however slowly one of them starts. With `once_gone`
+  /// the other one must have ended, too, as one does that is refused.
+  std::string meets(const std::string& own, const std::string& other, const std::string& launcher,
+                    bool once_gone = false) const {
+    write(
+        "meet.sh",
+        "own=$1; other=$2; gone=$3; shift 3\n"
+        "\"$@\" | { IFS= read -r line; printf '%s\\n' \"$line\"\n"
+        "echo $$ > $own.$$; mv $own.$$ $own.greeted; tries=0\n"
+        "until [ -e $other.greeted ] && { [ $gone = 0 ] || ! kill -0 $(cat $other.greeted); }; do\n"
+        "  sleep 0.1; tries=$((tries + 1)); [ $tries -lt 600 ] || break\n"
+        "done 2>/dev/null\n"
+        "exec cat; }\n");
+    return fmt::format("sh meet.sh {} {} {:d} {}", own, other, once_gone, launcher);
+  }
+
   /// A launcher that goes wrong in 20 of 100 simulations.
   static std::string unruly(const std::string& kinds = "die,hang,lag") {
     return fmt::format("'{}' {} 20 trouble.log", PARALLAX_UNRULY_LAUNCHER, kinds);

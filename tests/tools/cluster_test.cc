@@ -131,7 +131,8 @@ TEST_CASE("workers of another version are refused, and both are named") {
   CHECK(alone.err.find("here " + version + " (build ") != std::string::npos);
   CHECK(alone.err.find("E7131") != std::string::npos);
 
-  cli.write("hosts", "2 " + old + "\n2 " + other + "\n1 env\n");
+  cli.write("hosts", "2 " + old + "\n2 " + cli.meets("other", "good", other) + "\n1 " +
+                         cli.meets("good", "other", "env", true) + "\n");
   const auto expected = cli.parallax({"rates", "coin.yaml", "--runs", "30"});
   const auto mixed = cli.parallax({"rates", "coin.yaml", "--runs", "30", "--hosts", "hosts"});
   CAPTURE(mixed.err);
@@ -164,7 +165,8 @@ TEST_CASE("workers on processors that calculate otherwise are refused") {
         std::string::npos);
   CHECK(alone.err.find("E7131") != std::string::npos);
 
-  cli.write("hosts", "2 " + older + "\n1 env\n");
+  cli.write("hosts", "2 " + cli.meets("older", "good", older) + "\n1 " +
+                         cli.meets("good", "older", "env", true) + "\n");
   const auto expected = cli.parallax({"rates", "coin.yaml", "--runs", "30"});
   const auto mixed = cli.parallax({"rates", "coin.yaml", "--runs", "30", "--hosts", "hosts"});
   CAPTURE(mixed.err);

@@ -2,7 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -23,9 +26,17 @@ std::string document(const std::string& name) {
   return out.str();
 }
 
-TEST_CASE("docs/reference/diagnostics.md is what tools/update_docs makes") {
+TEST_CASE("every code is printed, and its kind stands on the page about diagnostics") {
   const CliFixture cli;
-  CHECK(cli.parallax({"diagnostics"}).out == document("docs/reference/diagnostics.md"));
+  const auto printed = cli.parallax({"diagnostics"}).out;
+  const auto page = document("docs/reference/diagnostics.md");
+  for (const auto& info : base::all_diagnostics()) {
+    const auto id = std::string(info.id);
+    CHECK_MESSAGE(printed.find("| " + id + " |") != std::string::npos, id);
+    const auto kind = id.starts_with("CPL") ? "CPL" : id.substr(0, id[1] == '-' ? 2 : 3);
+    CHECK_MESSAGE(std::regex_search(page, std::regex("\\n\\|[^|]*\\b" + kind + "[,; ][^|]*\\|")),
+                  id);
+  }
 }
 
 TEST_CASE("`diagnostics CODE` says what to do, and refuses other words") {
@@ -76,9 +87,19 @@ TEST_CASE("the page about the command line is what tools/update_docs makes") {
   const CliFixture cli;
   const auto page = document("docs/reference/command_line.md");
   std::istringstream lines(cli.parallax({"--help"}).out);
-  for (std::string line; std::getline(lines, line);) {
-    CHECK_MESSAGE(page.find((line.empty() ? "" : "    " + line) + '\n') != page.npos, line);
+  const std::regex command("  ([a-z][a-z-]*) +([^ ].*)");
+  std::smatch part;
+  std::size_t commands = 0;
+  for (std::string line; std::getline(lines, line) && line != "Examples:";) {
+    if (!std::regex_match(line, part, command)) continue;
+    const auto shown = "- `" + part[1].str() + "`: " + part[2].str() + '\n';
+    CHECK_MESSAGE(page.find(shown) != page.npos, line);
+    ++commands;
   }
+  const std::regex item("\n- `");
+  CHECK(commands > 30);
+  CHECK(static_cast<std::size_t>(
+            std::distance(std::sregex_iterator(page.begin(), page.end(), item), {})) == commands);
   for (const auto* topic : {"exit-codes", "files", "output", "seeds", "trust", "limits"}) {
     CHECK(cli.parallax({"help", topic}).code == 0);
     CHECK_MESSAGE(page.find('`' + std::string(topic) + '`') != page.npos, topic);
@@ -104,6 +125,46 @@ TEST_CASE("every link from page to page leads to a file") {
     }
   }
   CHECK(links > 200);
+}
+
+TEST_CASE("every folder of scenarios asks a question, with command, time, answer and picture") {
+  const fs::path root = PARALLAX_SOURCE_DIR;
+  std::size_t folders = 0;
+  for (const auto& entry : fs::directory_iterator(root / "scenarios")) {
+    if (!entry.is_directory()) continue;
+    ++folders;
+    CAPTURE(entry.path());
+    const auto text = document(fs::relative(entry.path() / "README.md", root).string());
+    CHECK(std::regex_search(text, std::regex(R"(\*\*Question:\*\* [^?]+\?\s\*\*Answer:\*\* )")));
+    CHECK(std::regex_search(text, std::regex("\n    [^\n]*parallax [^\n]+    # [^\n]*[0-9] s\n")));
+    // The classic problems have nothing to draw: a trace is shown.
+    const bool has_trace = text.find("\n    trace 1\n") != std::string::npos;
+    CHECK((has_trace || std::regex_search(text, std::regex(R"(!\[[^\]]+\]\()"))));
+  }
+  CHECK(folders > 8);
+}
+
+TEST_CASE("an entry of the changelog has at most three lines") {
+  std::istringstream lines(document("CHANGELOG.md"));
+  std::size_t entries = 0, length = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const bool begins = line.starts_with("- ");
+    entries += begins ? 1 : 0;
+    length = begins ? 1 : line.starts_with("  ") ? length + 1 : 0;
+    CHECK_MESSAGE(length <= 3, line);
+  }
+  CHECK(entries > 20);
+}
+
+TEST_CASE("the documentation stays short: pages of 350 kB, a README of 5 kB") {
+  const fs::path root = PARALLAX_SOURCE_DIR;
+  std::uintmax_t bytes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(root / "docs")) {
+    if (entry.path().extension() == ".md") bytes += entry.file_size();
+  }
+  CHECK(bytes > 100'000);
+  CHECK(bytes <= 350'000);
+  CHECK(document("README.md").size() <= 5'000);
 }
 
 TEST_CASE("every command of the README is one that the program knows") {

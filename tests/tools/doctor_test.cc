@@ -56,7 +56,7 @@ TEST_CASE("where all is well, it says so, and leaves nothing behind") {
     CHECK(check.at("needed") == true);
     CHECK_FALSE(check.contains("remedy"));
   }
-  for (const auto* name : {"MuJoCo", "SDF", "URDF", "MJCF", "meshes", "git", "python3"}) {
+  for (const auto* name : {"MuJoCo", "Bullet", "SDF", "URDF", "MJCF", "meshes", "git", "python3"}) {
     CAPTURE(name);
     const auto check = check_of(answer.document, name);
     CHECK(check.at("needed") == false);

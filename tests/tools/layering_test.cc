@@ -177,6 +177,9 @@ TEST_CASE("each third-party library stays behind its seam") {
       {"ode/", {"harness/engine/ode_"}},
       {"mujoco/",
        {"harness/engine/mujoco_", "harness/import/mjcf_reader.cc", "tools/adapters/cpp/"}},
+      {"btBullet", {"harness/engine/bullet_"}},
+      {"Bullet", {"harness/engine/bullet_"}},
+      {"LinearMath/", {"harness/engine/bullet_"}},
       {"sdf/", {"harness/import/sdf_reader.cc"}},
       {"urdf", {"harness/import/urdf_reader.cc"}},
       {"console_bridge/", {"harness/import/urdf_reader.cc"}},
@@ -207,11 +210,9 @@ TEST_CASE("only the maker of worlds knows which engine steps them") {
   bool made = false;
   for (const auto& file : source_files()) {
     for (const auto& include : includes_of(file)) {
-      const bool is_mujoco = include.target == "harness/engine/mujoco_world.h" ||
-                             include.target == "harness/engine/mujoco_engine.h";
-      if (is_mujoco) {
-        CHECK_MESSAGE(file.starts_with("harness/engine/mujoco_"),
-                      file << " includes " << include.target);
+      for (const std::string engine : {"harness/engine/mujoco_", "harness/engine/bullet_"}) {
+        if (!include.target.starts_with(engine)) continue;
+        CHECK_MESSAGE(file.starts_with(engine), file << " includes " << include.target);
       }
       if (!include.target.starts_with("harness/engine/ode_")) continue;
       made = made || file == "harness/engine/physics_world.cc";

@@ -345,16 +345,16 @@ TEST_CASE("starts that interpenetrate are drawn again, and counted") {
 TEST_CASE("a limit or a signal leaves a partial result that says so") {
   const CliFixture cli;
   const auto limited =
-      json_of(cli, {"rates", "scenario.yaml", "--runs", "1000000", "--time-limit", "5"}, 4);
+      json_of(cli, {"rates", "scenario.yaml", "--runs", "100000", "--time-limit", "5"}, 4);
   CHECK(limited["complete"] == false);
-  CHECK(limited["traces"][0]["runs"].get<int>() < 1'000'000);
+  CHECK(limited["traces"][0]["runs"].get<int>() < 100'000);
   CHECK(limited["traces"][0]["any"]["count"] == 0);
 
   for (const int signal : {SIGINT, SIGTERM}) {
     ProcessOptions options;
     int looks = 0;
     options.signal_when = [&] { return ++looks > 100 ? signal : 0; };
-    const auto stopped = cli.parallax({"rates", "scenario.yaml", "--runs", "1000000"}, options);
+    const auto stopped = cli.parallax({"rates", "scenario.yaml", "--runs", "100000"}, options);
     CHECK(stopped.code == 128 + signal);
   }
 }

@@ -141,38 +141,48 @@ TEST_CASE("an engine that simulates the scenario already, or a command that is n
   CHECK_FALSE(std::filesystem::exists(cli.folder() / "r" / "journal.ndjson"));
 }
 
-TEST_CASE("ode and mujoco about the box at the border") {
-  const CliFixture cli;
+/// Is the engine there, as doctor names it?
+bool is_there(const CliFixture& cli, const std::string& title) {
   const auto doctor = Json::parse(cli.parallax({"doctor", "--json"}).out);
-  bool has_mujoco = false;
   for (const auto& check : doctor["checks"]) {
-    has_mujoco = has_mujoco || (check["name"] == "MuJoCo" && check["health"] == "works");
+    if (check["name"] == title) return check["health"] == "works";
   }
+  return false;
+}
+
+void compare_with_ode(const std::string& title, const std::string& name) {
+  CAPTURE(name);
+  const CliFixture cli;
   const auto ran = cli.parallax({"run", "edge.yaml", "--out", "r", "--json", "--second-opinion",
-                                 "mujoco", "--second-opinion-runs", "6"});
+                                 name, "--second-opinion-runs", "6"});
   CAPTURE(ran.err);
-  if (!has_mujoco) {
+  if (!is_there(cli, title)) {
     CHECK(ran.code == 2);
-    CHECK(holds(ran.err, "libmujoco-dev"));
+    CHECK(holds(ran.err, "lib" + name + "-dev"));
     return;
   }
   REQUIRE(ran.code == 1);
   const auto opinion = opinion_of(ran);
   CHECK(opinion["first"].get<std::string>().starts_with("ode "));
-  CHECK(opinion["other"].get<std::string>().starts_with("mujoco "));
+  CHECK(opinion["other"].get<std::string>().starts_with(name + " "));
   CHECK(opinion["causes"].size() == 1);
-  // The other way round, and the engine is on record: a run made by mujoco is repeated by mujoco.
-  cli.write("soft.yaml", "include: edge.yaml\nsimulator: {engine: mujoco}\n");
-  const auto back = cli.parallax({"run", "soft.yaml", "--out", "s", "--json", "--second-opinion",
+  // The other way round, and the engine is on record: a run made by it is repeated by it.
+  cli.write("other.yaml", "include: edge.yaml\nsimulator: {engine: " + name + "}\n");
+  const auto back = cli.parallax({"run", "other.yaml", "--out", "s", "--json", "--second-opinion",
                                   "ode", "--second-opinion-runs", "6"});
   CAPTURE(back.err);
-  CHECK(Json::parse(back.out)["simulator"]["name"] == "mujoco");
+  CHECK(Json::parse(back.out)["simulator"]["name"] == name);
   CHECK(opinion_of(back)["other"].get<std::string>().starts_with("ode "));
   CHECK(cli.parallax({"replay", "s"}).code == 0);
   REQUIRE(cli.parallax({"report", "s", "-o", "s.html"}).code == 0);
   CHECK(holds(cli.read("s.html"), "Second opinion"));
   CHECK(holds(cli.read("s.html"), opinion_of(back)["other"].get<std::string>()));
-  CHECK(holds(cli.read("s/journal.ndjson"), R"("name":"mujoco")"));
+  CHECK(holds(cli.read("s/journal.ndjson"), "\"name\":\"" + name + "\""));
+}
+
+TEST_CASE("ode and other engines about the box at the border") {
+  compare_with_ode("MuJoCo", "mujoco");
+  compare_with_ode("Bullet", "bullet");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Campaigns and suites on a Slurm that tools/cluster-test has started for this program: two nodes
-// on one machine. The scripts are those of docs/guide/clusters.md.
+// on one machine. The scripts are those of docs/guide/slurm.
 
 #include <doctest/doctest.h>
 

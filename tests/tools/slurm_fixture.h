@@ -11,24 +11,15 @@
 
 #include "tests/tools/cluster_fixture.h"
 
-// Commands of the Slurm that tools/cluster-test has started, and the scripts of
-// docs/guide/clusters.md.
+// Commands of the Slurm that tools/cluster-test has started, and the scripts in docs/guide/slurm.
 
 namespace parallax::test {
 
-/// The block of the page whose second line names this file.
+/// A script that docs/guide/clusters.md names.
 inline std::string script_of_page(const std::string& name) {
-  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/guide/clusters.md");
-  std::string block;
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with("    ")) {
-      block += line.substr(4) + '\n';
-      continue;
-    }
-    if (block.find("\n# " + name + "\n") != std::string::npos) return block;
-    block.clear();
-  }
-  throw std::runtime_error("docs/guide/clusters.md has no script " + name);
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/guide/slurm/" + name);
+  if (!in) throw std::runtime_error("docs/guide/slurm has no script " + name);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 /// A command of Slurm in the fixture's folder, for whose jobs `parallax` is this build's.

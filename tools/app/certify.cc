@@ -25,6 +25,14 @@ bool is_whole(const std::string& exploration) { return exploration != "stopped";
 
 }  // namespace
 
+runtime::ProofLimits proof_limits(const Context& context) {
+  runtime::ProofLimits limits;
+  limits.stop = &context.stop();
+  const auto memory_mb = context.form().memory_limit_mb;
+  if (memory_mb > 0) limits.bytes = static_cast<std::size_t>(memory_mb) << 19U;  // the half
+  return limits;
+}
+
 TraceCertifier::TraceCertifier(const CertifyOption& option, const std::vector<std::string>& models,
                                const runtime::CompiledModel& model, Context& context)
     : option_(option), context_(context) {
@@ -59,11 +67,8 @@ void TraceCertifier::conclude(const std::string& exploration, bool searched) {
   if (exploration == runtime::to_string(runtime::Exploration::kCompleteUpToBound)) {
     claim_->limit_to_horizon();
   }
-  runtime::ProofLimits limits;
-  limits.stop = &context_.stop();
-  const auto memory_mb = context_.form().memory_limit_mb;
-  if (memory_mb > 0) limits.bytes = static_cast<std::size_t>(memory_mb) << 19U;  // the half
-  const auto certificate = runtime::prove(*claim_, *files_, limits, context_.sink(), searched);
+  const auto certificate =
+      runtime::prove(*claim_, *files_, proof_limits(context_), context_.sink(), searched);
   switch (certificate.verdict) {
     case runtime::ProofVerdict::kAccepted:
       verdict_ = "proof checked";

@@ -22,6 +22,9 @@ struct CertifyOption {
   bool keep = true;  // false: the files are gone when the command ends, so nobody is told of them
 };
 
+/// Limits of a proof's check: half of the memory that the program may take.
+runtime::ProofLimits proof_limits(const Context& context);
+
 /// The verdict on a claim that rests on an argument by symmetry.
 inline constexpr std::string_view kBySymmetry = "symmetry, not proof checked";
 

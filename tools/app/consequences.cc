@@ -107,10 +107,6 @@ bool is_behind(const ConsequenceFact& fact, compiler::Timepoint cut) {
   return fact.time > cut || (fact.happens && fact.time == cut);
 }
 
-bool is_instance(const std::string& ground, const std::string& asked) {
-  return ground == asked || base::symbol_of(ground) == asked;
-}
-
 }  // namespace
 
 base::Result<ModelConsequences> find_model_consequences(const CompiledModel& model,
@@ -165,7 +161,7 @@ base::Result<Abduction> abduce(const CompiledModel& model, const AbductionQuery&
     bool is_known = false;
     std::vector<std::string> names;
     for (const auto& declared : model.events) {
-      is_known = is_known || is_instance(declared.name, event);
+      is_known = is_known || base::is_instance(declared.name, event);
       names.push_back(base::symbol_of(declared.name));
     }
     if (is_known) continue;
@@ -175,7 +171,9 @@ base::Result<Abduction> abduce(const CompiledModel& model, const AbductionQuery&
   }
   auto asked = facts_of(model, -1);
   for (const auto& one : asked) {
-    const auto is_asked = [&](const auto& event) { return is_instance(one.fact.name, event); };
+    const auto is_asked = [&](const auto& event) {
+      return base::is_instance(one.fact.name, event);
+    };
     if (!one.fact.happens || std::none_of(query.events.begin(), query.events.end(), is_asked)) {
       continue;
     }

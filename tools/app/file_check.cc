@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "compiler/artifact/artifact_writer.h"
+#include "compiler/pipeline/check_texts.h"
 #include "tools/app/dead_retries.h"
+#include "tools/app/file_kind.h"
 #include "tools/app/scenario_check.h"
 #include "tools/app/scenario_model.h"
 
@@ -13,6 +15,20 @@ namespace {
 
 bool names_scenario(const std::string& path) {
   return path.ends_with(".yaml") || path.ends_with(".yml");
+}
+
+/// Then nothing asks for clauses.
+bool is_model_alone(const ModelOptions& options) {
+  return options.plan.empty() && options.bind.empty() && options.regions.empty() &&
+         options.until.empty() && options.minimize.empty() && !options.best && !options.property;
+}
+
+void check_model(const ModelOptions& options, Context& context) {
+  const auto errors_before = context.sink().error_count();
+  for (const auto& path : options.models)
+    (void)expect_kind(path, {FileKind::kModel}, "a model", context);
+  if (context.sink().error_count() != errors_before) return;
+  (void)compiler::check_texts(compile_input(options, context), context.files(), context.sink());
 }
 
 }  // namespace
@@ -40,6 +56,7 @@ void check_files(const ModelOptions& options, Context& context) {
   if (models.empty()) return;
   auto together = options;
   together.models = models;
+  if (is_model_alone(together)) return check_model(together, context);
   const auto compilation = compile_models(together, context);
   if (!compilation) return;
   report_dead_retries(*compilation, context);

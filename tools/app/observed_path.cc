@@ -136,7 +136,9 @@ base::Result<std::vector<ObservedPath>> observed_paths(const ScenarioModel& load
                                                        Context& context) {
   const PathReader reader(loaded, context);
   std::unique_ptr<ExecutionCheck> check;
-  if (loaded.scenario.execution == harness::Execution::kClosedLoop && journal.header) {
+  // A model without a start leaves a journal without samples.
+  if (loaded.scenario.execution == harness::Execution::kClosedLoop && journal.header &&
+      !journal.samples.empty()) {
     auto made = ExecutionCheck::make(loaded, journal.header->seed, context);
     if (!made) return context.sink().already_reported();
     check = *std::move(made);

@@ -10,10 +10,10 @@
 namespace parallax::tools {
 namespace {
 
-using Ratios = std::map<std::string, double>;
+using Costs = std::map<std::string, double>;
 
-/// Reads `{"name": ratio, ...}`; ratios are positive and finite.
-bool read_ratios(const nlohmann::json& document, const char* key, Ratios& out, std::string& error) {
+/// Reads `{"name": cost, ...}`; costs are positive and finite.
+bool read_costs(const nlohmann::json& document, const char* key, Costs& out, std::string& error) {
   if (!document.contains(key) || !document[key].is_object()) {
     error = fmt::format("`{}` is missing or no object", key);
     return false;
@@ -22,7 +22,7 @@ bool read_ratios(const nlohmann::json& document, const char* key, Ratios& out, s
     const bool usable =
         value.is_number() && value.get<double>() > 0 && std::isfinite(value.get<double>());
     if (!usable) {
-      error = fmt::format("`{}`: `{}` has no positive ratio", key, name);
+      error = fmt::format("`{}`: `{}` has no positive cost", key, name);
       return false;
     }
     out[name] = value.get<double>();
@@ -30,9 +30,9 @@ bool read_ratios(const nlohmann::json& document, const char* key, Ratios& out, s
   return true;
 }
 
-nlohmann::ordered_json rounded(const Ratios& ratios) {
+nlohmann::ordered_json rounded(const Costs& costs) {
   auto out = nlohmann::ordered_json::object();
-  for (const auto& [name, ratio] : ratios) out[name] = std::stod(fmt::format("{:.3g}", ratio));
+  for (const auto& [name, cost] : costs) out[name] = std::stod(fmt::format("{:.3g}", cost));
   return out;
 }
 
@@ -45,8 +45,8 @@ std::optional<Bounds> parse_bounds(std::string_view text, std::string& error) {
     return std::nullopt;
   }
   Bounds bounds;
-  if (!read_ratios(document, "questions", bounds.questions, error) ||
-      !read_ratios(document, "builds", bounds.builds, error)) {
+  if (!read_costs(document, "questions", bounds.questions, error) ||
+      !read_costs(document, "builds", bounds.builds, error)) {
     return std::nullopt;
   }
   return bounds;
@@ -58,20 +58,20 @@ std::string to_json(const Bounds& bounds) {
   return base::json_text(document, 2) + '\n';
 }
 
-BoundVerdict judge_question(double ratio, std::optional<double> recorded) {
+BoundVerdict judge_question(double cost, std::optional<double> recorded) {
   if (!recorded) return BoundVerdict::kUnknown;
-  if (ratio >= kSlowQuestion * *recorded) return BoundVerdict::kExceeded;
-  return ratio * kSlowQuestion <= *recorded ? BoundVerdict::kFaster : BoundVerdict::kWithin;
+  if (cost >= kSlowQuestion * *recorded) return BoundVerdict::kExceeded;
+  return cost * kSlowQuestion <= *recorded ? BoundVerdict::kFaster : BoundVerdict::kWithin;
 }
 
-BoundVerdict judge_build(double ratio, std::optional<double> recorded) {
+BoundVerdict judge_build(double cost, std::optional<double> recorded) {
   if (!recorded) return BoundVerdict::kUnknown;
-  if (ratio > kTooLongBuild * *recorded) return BoundVerdict::kExceeded;
-  if (ratio > kLongBuild * *recorded) return BoundVerdict::kLonger;
-  return ratio * kLongBuild < *recorded ? BoundVerdict::kFaster : BoundVerdict::kWithin;
+  if (cost > kTooLongBuild * *recorded) return BoundVerdict::kExceeded;
+  if (cost > kLongBuild * *recorded) return BoundVerdict::kLonger;
+  return cost * kLongBuild < *recorded ? BoundVerdict::kFaster : BoundVerdict::kWithin;
 }
 
-std::string verdict_line(const std::string& name, double ratio, std::optional<double> recorded,
+std::string verdict_line(const std::string& name, double cost, std::optional<double> recorded,
                          BoundVerdict verdict) {
   const auto* words = "";
   switch (verdict) {
@@ -91,14 +91,17 @@ std::string verdict_line(const std::string& name, double ratio, std::optional<do
       words = "NOT RECORDED: record it (--record)";
       break;
   }
-  const auto before = recorded ? fmt::format("{:.3g}", *recorded) : std::string("-");
-  const auto change = recorded ? fmt::format("{:.2f} x", ratio / *recorded) : std::string("");
-  return fmt::format("  {:<36}{:>9.3g} {:>9} {:>8}  {}\n", name, ratio, before, change, words);
+  const auto shown = [](double value) {
+    return value < 100 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value);
+  };
+  const auto before = recorded ? shown(*recorded) : std::string("-");
+  const auto change = recorded ? fmt::format("{:.2f} x", cost / *recorded) : std::string("");
+  return fmt::format("  {:<36}{:>9} {:>9} {:>8}  {}\n", name, shown(cost), before, change, words);
 }
 
-std::optional<double> recorded_ratio(const Ratios& ratios, const std::string& name) {
-  const auto found = ratios.find(name);
-  if (found == ratios.end()) return std::nullopt;
+std::optional<double> recorded_cost(const Costs& costs, const std::string& name) {
+  const auto found = costs.find(name);
+  if (found == costs.end()) return std::nullopt;
   return found->second;
 }
 

@@ -10,9 +10,9 @@ struct CheckOptions {
   bool record = false;       // write what was measured into `bounds`
 };
 
-/// Measures cheap questions and compares their cost with the recorded bounds, in under two minutes.
-/// Returns an exit code: 1 where one is slow, answers wrongly or is not recorded, 3 if the file of
-/// bounds cannot be read.
+/// Counts the instructions of cheap questions and holds them against the recorded ones, in about
+/// two minutes. Needs valgrind. Returns an exit code: 1 where one is slow, answers wrongly or is
+/// not recorded, 3 if the file of bounds cannot be read.
 int check_bounds(const CheckOptions& options);
 
 }  // namespace parallax::tools

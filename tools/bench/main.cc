@@ -9,7 +9,6 @@
 #include "tools/bench/bench.h"
 #include "tools/bench/check.h"
 #include "tools/bench/families/families.h"
-#include "tools/bench/reference_work.h"
 #include "tools/cli/command_line.h"
 
 namespace parallax::tools {
@@ -115,7 +114,7 @@ int run(int argc, char** argv) {
   bool checks = false;
   CheckOptions check;
   check.bounds = PARALLAX_SOURCE_DIR "/tools/bench/bounds.json";
-  table.flag("--check", checks, "Hold cheap questions against the recorded bounds, in a minute");
+  table.flag("--check", checks, "Hold cheap questions against the recorded bounds, in two minutes");
   table.flag("--record", check.record, "With --check: record what was measured as the new bounds");
   table.option("--bounds", check.bounds, "With --check: the file of bounds").show_default();
   table
@@ -127,9 +126,8 @@ int run(int argc, char** argv) {
   OptionTable model("model", "Print the model of a family, such as lamps_4_6");
   model.flag("--tuned", tuned, "The logic program that a clingo user would write instead");
   OptionTable solve("solve", "CaDiCaL alone on a DIMACS file");
-  OptionTable reference("reference", "The work that is the unit of --check");
   OptionTable stages("stages", "Time the stages of compiling a model file");
-  const Program program{table, "", false, {&model, &solve, &stages, &reference}};
+  const Program program{table, "", false, {&model, &solve, &stages}};
   for (auto* command : {&model, &solve, &stages}) {
     command->option("name", argument, "Name or file").required();
   }
@@ -140,10 +138,6 @@ int run(int argc, char** argv) {
   if (line.exit_code) return *line.exit_code;
   if (!line.command) return checks ? check_bounds(check) : measure_all(options);
   const auto* command = program.commands[*line.command];
-  if (command == &reference) {
-    fmt::print("{}\n", reference_work());
-    return 0;
-  }
   if (command == &model) return print_model(argument, tuned);
   if (command == &solve) return solve_plainly(argument);
   staged.model = argument;

@@ -17,15 +17,9 @@ std::string_view severity_of(const base::DiagnosticInfo& info) {
   return info.severity == base::Severity::kError ? "error" : "warning";
 }
 
-/// docs/reference/diagnostics.md: every code with its text, a row each.
-std::string registry_page() {
-  std::string out =
-      "# Diagnostics\n\n"
-      "Every error (E, CPL) and warning (W) has a code that is never reused. The message says what "
-      "to do behind `help:` or\n`fix:`; `parallax diagnostics CODE` prints it for a code. This "
-      "page "
-      "is made by `tools/update_docs`.\n\n"
-      "| code | text |\n|---|---|\n";
+/// Every code with its text, as a table of Markdown.
+std::string table_of_codes() {
+  std::string out = "| code | text |\n|---|---|\n";
   const auto cell = [](std::string_view text) {
     std::string escaped;
     for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
@@ -53,7 +47,7 @@ void refuse(const std::string& code, base::DiagnosticSink& sink) {
 
 int show_diagnostics(const DiagnosticsOptions& options, Invocation& invocation) {
   if (options.codes.empty()) {
-    invocation.result(registry_page());
+    invocation.result(table_of_codes());
     return 0;
   }
   const auto& all = base::all_diagnostics();

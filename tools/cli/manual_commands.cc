@@ -28,6 +28,7 @@ void report_no_such(const std::string& what, const std::string& word, const Name
   if (const auto near = base::nearest_name(word, known)) {
     built.fix(fmt::format("replace `{}` with `{}`", base::printable(word), *near));
   }
+  built.note("`parallax help` lists commands and topics, docs/README.md the pages for all else");
 }
 
 const OptionTable* command_named(const Program& program, const std::string& name) {

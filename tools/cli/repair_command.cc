@@ -64,6 +64,9 @@ int apply(const RepairResult& result, const RepairCommandOptions& options, Invoc
   if (!apply_proposal(proposal, write_gate(options.repair.folder, invocation), invocation))
     return 0;
   tell_written(proposal.files, proposal.read_by_world, invocation);
+  if (const auto by = refutation(proposal, result)) {
+    invocation.remark("the model is now refuted by " + *by);
+  }
   if (proposal.agrees_less) {
     invocation.remark(fmt::format(
         "the model agreed with {} of the runs before, and with {} now: other proposals fit better",

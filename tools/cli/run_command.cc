@@ -22,11 +22,13 @@
 #include "tools/app/trace_feed.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
+#include "tools/cli/inputs_keeper.h"
 #include "tools/cli/launcher_options.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/sample_output.h"
 #include "tools/cli/second_opinion_option.h"
 #include "tools/cli/shared_options.h"
+#include "tools/repair/provocation.h"
 
 namespace parallax::tools {
 namespace {
@@ -60,6 +62,8 @@ std::filesystem::path newest_run_folder(const std::filesystem::path& scenario) {
   return numbered(scenario, free == 1 ? 1 : free - 1);
 }
 
+constexpr int kProvokedCode = 1;  // as of a discrepancy
+
 struct RunOptions {
   std::string scenario;
   std::string out;
@@ -82,6 +86,7 @@ struct RunOptions {
   std::string hits = "first";
   bool split_initial = false;
   std::string samples;
+  std::int64_t provoke = 0;  // 0: nothing is provoked
   OpinionOptions opinion;
   CommandPermission commands;
   LauncherOptions launcher;
@@ -223,40 +228,6 @@ Ran run_closed(const RunOptions& options, const ScenarioModel& loaded,
   return {std::move(result), (*loop)->solve_calls()};
 }
 
-/// Writes the texts that a run reads beside its journal as soon as there is one, so that a run that
-/// is killed has them, too. Before that the folder may belong to another run.
-class InputsKeeper {
- public:
-  InputsKeeper(std::filesystem::path file, std::string text, Invocation& invocation)
-      : file_(std::move(file)), text_(std::move(text)), invocation_(invocation) {}
-
-  /// Calls `keep` before the first simulation is waited for.
-  void watch(harness::CampaignOptions& campaign) {
-    campaign.progress = [this, tell = std::move(campaign.progress)](const auto& progress) {
-      keep();
-      if (tell) tell(progress);
-    };
-    campaign.on_sample = [this, tell = std::move(campaign.on_sample)](auto row) {
-      keep();
-      if (tell) tell(std::move(row));
-    };
-  }
-  /// The journal must be open. Writes once; whether that succeeded.
-  bool keep() {
-    if (text_.empty()) return is_kept_;
-    is_kept_ =
-        base::write_output(file_, std::exchange(text_, {}), invocation_.files(), invocation_.sink())
-            .has_value();
-    return is_kept_;
-  }
-
- private:
-  std::filesystem::path file_;
-  std::string text_;  // empty: nothing to write, or it was written
-  Invocation& invocation_;
-  bool is_kept_ = true;
-};
-
 /// Warns that a clean run used the starts for which a fault was mended.
 void warn_of_reused_starts(const harness::CampaignOptions& campaign,
                            const harness::CampaignResult& result, const harness::Scenario& scenario,
@@ -269,6 +240,42 @@ void warn_of_reused_starts(const harness::CampaignOptions& campaign,
                               : fmt::format("{} (and {} other {})", earlier.front(), more,
                                             base::agreed(more, "run", "runs"));
   sink.warning(codes::kStartsReused, base::SourceRange{scenario.source, 0, 0}, name);
+}
+
+/// After the run, performs events that its plan does not perform.
+base::Result<std::optional<Provocation>> provoke_after(
+    const RunOptions& options, const ScenarioModel& loaded, const std::filesystem::path& folder,
+    const std::function<void(const harness::CampaignProgress&)>& progress,
+    const harness::CampaignResult& result,
+    const std::function<base::Result<harness::SimulatorFactory>(const ScenarioModel&)>& simulator,
+    Invocation& invocation) {
+  if (options.provoke == 0 || !result.journal_open || result.failed || invocation.stopped()) {
+    return std::optional<Provocation>();
+  }
+  ProvokeOptions asked{options.provoke, options.seed, options.jobs, simulator, progress};
+  auto provoked = provoke(loaded, folder, asked, invocation);
+  if (progress) clear_progress();
+  if (!provoked) return invocation.sink().already_reported();
+  return std::optional(*std::move(provoked));
+}
+
+/// The result, and what was provoked after it.
+void tell(const harness::CampaignResult& result, const std::optional<Provocation>& provoked,
+          Invocation& invocation) {
+  const bool is_verbose = invocation.options().verbosity > 0;
+  if (invocation.options().json) {
+    auto document = harness::campaign_json(result, true, is_verbose);
+    if (provoked) {
+      auto json = base::parse_ordered_json(document);
+      json["provoked"] = provocation_json(*provoked);
+      document = base::json_text(json);
+    }
+    return invocation.document(document);
+  }
+  const harness::ReportStyle style{invocation.color_on(STDOUT_FILENO), is_verbose};
+  const auto text =
+      is_verbose ? harness::campaign_text(result, style) : harness::campaign_summary(result, style);
+  invocation.result(text + (provoked ? provocation_text(*provoked) : ""));
 }
 
 int run_scenario(const RunOptions& given, Invocation& invocation) {
@@ -305,8 +312,11 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   if (options.out.empty() && !base::check_unnamed_output(campaign.run_dir, ".", "--out", sink)) {
     return 0;
   }
-  const auto simulator = permitted_simulator(
-      *loaded, options.commands.allow || !options.commands.refuse, invocation, *workers);
+  const auto simulator_of = [&](const ScenarioModel& of) {
+    return permitted_simulator(of, options.commands.allow || !options.commands.refuse, invocation,
+                               *workers);
+  };
+  const auto simulator = simulator_of(*loaded);
   if (!simulator) return 0;
   for (const auto* name : {"report.txt", "report.json", kInputsName.data()}) {
     if (!base::check_output(campaign.run_dir / name, invocation.files(), sink)) return 0;
@@ -317,32 +327,28 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
   const auto opinion = OpinionOfRun::of(options.opinion, *loaded, invocation);
   if (!opinion) return 0;
   if (*opinion) campaign.on_sample = (*opinion)->listener(std::move(campaign.on_sample));
-  const bool shows_progress = static_cast<bool>(campaign.progress);
+  const auto progress = campaign.progress;  // as asked for: the keeper listens, too
   InputsKeeper keeper(campaign.run_dir / kInputsName, std::move(inputs), invocation);
   keeper.watch(campaign);
   const bool closed = loaded->scenario.execution == Execution::kClosedLoop;
   auto ran = closed ? run_closed(options, *loaded, *simulator, campaign, opinion->get(), invocation)
                     : run_open(*loaded, *simulator, campaign, opinion->get(), invocation);
   auto& result = ran.result;
-  if (shows_progress) clear_progress();
+  if (progress) clear_progress();
   if (!report_fleet(*workers, invocation) || !result) return 0;
   if (!samples.write(invocation)) return 0;
   result->coverage = coverage_of_run(*loaded, *result, invocation);
   warn_of_reused_starts(campaign, *result, loaded->scenario, sink);
   if (result->journal_open && !harness::write_report(*result, campaign.run_dir, sink)) return 0;
   if (result->journal_open && !keeper.keep()) return 0;
-  const bool is_verbose = invocation.options().verbosity > 0;
-  if (invocation.options().json) {
-    invocation.document(harness::campaign_json(*result, true, is_verbose));
-  } else {
-    const harness::ReportStyle style{invocation.color_on(STDOUT_FILENO), is_verbose};
-    invocation.result(is_verbose ? harness::campaign_text(*result, style)
-                                 : harness::campaign_summary(*result, style));
-  }
+  const auto provoked = provoke_after(options, *loaded, campaign.run_dir, progress, *result,
+                                      simulator_of, invocation);
+  if (!provoked) return 0;
+  tell(*result, *provoked, invocation);
   invocation.remark(fmt::format("{} simulations in {:.1f} s ({:.0f} s simulated)",
                                 result->timing.runs_made, result->timing.wall_s,
                                 result->timing.simulated_s));
-  if (is_verbose) {
+  if (invocation.options().verbosity > 0) {
     invocation.remark(fmt::format("model: {} variables, {} clauses, {} solver calls",
                                   model.variable_count(), model.clauses.size(), ran.solve_calls));
   }
@@ -350,7 +356,9 @@ int run_scenario(const RunOptions& given, Invocation& invocation) {
     invocation.remark(fmt::format("report: {}", (campaign.run_dir / "report.txt").string()));
   }
   // The error decides the exit code.
-  return result->failed ? 0 : harness::exit_code(*result);
+  if (result->failed) return 0;
+  const int code = harness::exit_code(*result);
+  return code == 0 && *provoked && !(*provoked)->is_clean() ? kProvokedCode : code;
 }
 
 }  // namespace
@@ -368,9 +376,12 @@ Command run_command() {
       "  parallax run edge.yaml --seed 7 --out out/edge7 --resume\n"
       "  parallax run edge.yaml --keep-going --samples edge.csv\n"
       "  parallax run edge.yaml --search 40\n"
-      "  parallax run edge.yaml --second-opinion mujoco\n"
+      "  parallax run edge.yaml --provoke 100\n"
+      "  parallax run edge.yaml --second-opinion bullet\n"
       "  parallax run edge.yaml --launcher 'srun -n1 -c1' --jobs 32\n"
-      "Exit codes: 0 no discrepancy, 1 discrepancy, 4 inconclusive, as without a trace.");
+      "Exit codes: 0 no discrepancy, 1 discrepancy, also a provoked one, 4 inconclusive, as "
+      "without "
+      "a trace.");
   command.option("scenario", options->scenario, "Scenario file (YAML)").required().file({"yaml"});
   command.heading("The run");
   command.option("--out", options->out, "Run folder; default out/NAME, numbered if taken").folder();
@@ -460,6 +471,14 @@ Command run_command() {
   add_hits_option(command, options->hits);
   command.flag("--split-initial", options->split_initial,
                "Make each initial state a trace of its own, with its own claim");
+  command.heading("Events beyond the plan");
+  command
+      .option("--provoke", options->provoke,
+              "Then perform up to N events that the model allows and the plan does not perform")
+      .details(
+          "Each in a state that a run came to. An event that the world refuses, or that ends "
+          "otherwise than the model says, gives exit code 1: the model permits too much.")
+      .check(WholeNumber{1, 1'000'000});
   command.heading("Second opinion");
   add_opinion_options(command, options->opinion);
   add_command_options(command, options->commands, true);

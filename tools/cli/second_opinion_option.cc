@@ -7,7 +7,7 @@
 #include "compiler/base/codes/files.h"
 #include "harness/campaign/journal.h"
 #include "harness/cluster/shell_words.h"
-#include "harness/engine/mujoco_module.h"
+#include "harness/engine/engine_module.h"
 #include "harness/engine/world_check.h"
 #include "tools/app/closed_loop.h"
 #include "tools/app/simulator_factory.h"
@@ -31,7 +31,9 @@ void add_opinion_options(OptionTable& command, OpinionOptions& options) {
   command
       .option(kOption, options.other,
               "Repeat discrepancies, and some clean runs, with another engine or simulator")
-      .details("From the same starts: ode, mujoco, or the command that starts another simulator.")
+      .details(
+          "From the same starts: ode, mujoco, bullet, or the command that starts another "
+          "simulator.")
       .named_value("ENGINE|COMMAND");
   command
       .option("--second-opinion-runs", options.clean,
@@ -65,9 +67,7 @@ base::Status OpinionOfRun::choose_engine(EngineKind engine) {
   if (loaded_.scenario.simulator.engine == engine) {
     return refuse("the scenario is simulated by this engine already; name another one");
   }
-  if (engine == EngineKind::kMujoco && !harness::has_mujoco()) {
-    return refuse(harness::why_no_mujoco());
-  }
+  if (!harness::has_engine(engine)) return refuse(harness::why_no_engine(engine));
   scenario.simulator.engine = scenario.world.engine = engine;
   const auto problems = harness::check_world(scenario.world);
   if (!problems.empty()) {
@@ -85,8 +85,9 @@ base::Status OpinionOfRun::choose_command() {
   if (!split.fault.empty() || split.words.empty()) {
     return invocation_.sink().error_about(
         codes::kUsage, kOption,
-        split.fault.empty() ? std::string("it names nobody; it takes ode, mujoco or a command")
-                            : fmt::format("{} (byte {})", split.fault, split.fault_at + 1));
+        split.fault.empty()
+            ? std::string("it names nobody; it takes ode, mujoco, bullet or a command")
+            : fmt::format("{} (byte {})", split.fault, split.fault_at + 1));
   }
   simulator = harness::SimulatorSpec();
   simulator.source = other_.scenario.actions_source;

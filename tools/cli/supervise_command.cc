@@ -12,11 +12,15 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "compiler/base/descriptor.h"
 #include "compiler/base/subprocess.h"
+#include "harness/simulator/process_memory.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
 
@@ -30,10 +34,9 @@ constexpr auto kEndGrace = std::chrono::milliseconds(1500);
 constexpr auto kCleaning = std::chrono::seconds(5);  // against programs that never stop forking
 constexpr int kCannotStart = 127;                    // as shells have it
 
-/// The children of this process, including those that it has taken over.
-std::vector<pid_t> own_children() {
+/// The children of a process among all that there are, for systems without lists of children.
+std::vector<pid_t> children_by_search(pid_t parent) {
   std::vector<pid_t> children;
-  const auto self = ::getpid();
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator("/proc", error)) {
     const auto name = entry.path().filename().string();
@@ -44,20 +47,27 @@ std::vector<pid_t> own_children() {
     // "pid (name) state parent ...", where the name may hold anything.
     const auto end = text.rfind(") ");
     if (end == std::string::npos || text.size() < end + 4) continue;
-    if (std::atoi(text.c_str() + end + 4) == self) children.push_back(std::atoi(name.c_str()));
+    if (std::atoi(text.c_str() + end + 4) == parent) children.push_back(std::atoi(name.c_str()));
   }
   return children;
+}
+
+/// The children of this process, including those that it has taken over.
+std::vector<pid_t> own_children() {
+  const auto self = ::getpid();
+  auto children = harness::children_of(self);
+  return children ? std::move(*children) : children_by_search(self);
 }
 
 /// Kills what is left below this process: the children of a killed child come to us in turn.
 void end_descendants() {
   const auto deadline = Clock::now() + kCleaning;
   while (Clock::now() < deadline) {
-    for (const auto child : own_children()) ::kill(child, SIGKILL);
     pid_t ended = 0;
     while ((ended = ::waitpid(-1, nullptr, WNOHANG)) > 0) {
     }
     if (ended < 0 && errno == ECHILD) return;
+    for (const auto child : own_children()) ::kill(child, SIGKILL);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 }

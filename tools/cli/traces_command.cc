@@ -9,6 +9,7 @@
 #include "tools/app/best_traces.h"
 #include "tools/app/certify.h"
 #include "tools/app/plan_inputs.h"
+#include "tools/app/preferred_traces.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_listing.h"
 #include "tools/app/trace_search.h"
@@ -24,6 +25,7 @@ namespace {
 
 struct TracesOptions {
   ModelOptions model;
+  std::vector<std::string> prefer;
   SearchOptions search;
   bool count = false;
   bool expect_traces = false;
@@ -35,9 +37,14 @@ struct TracesOptions {
   CertifyOption certify;
 };
 
+using StartTime = std::chrono::steady_clock::time_point;
+double seconds_since(StartTime start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 constexpr std::int64_t kBriefly = 20'000;  // conflicts to find what one trace leaves open
 
-/// Message for a list that is complete and empty.
+/// For a complete and empty list.
 void point_to_explanation(const TracesOptions& options, const Invocation& invocation) {
   std::string command = "parallax explain";
   for (const auto& model : options.model.models) command += " " + model;
@@ -49,8 +56,8 @@ void point_to_explanation(const TracesOptions& options, const Invocation& invoca
 /// Tells what is known of the other traces: complete, up to the bound, or stopped by the limit.
 void close_list(const TracesOptions& options, const compiler::CompiledModel& model,
                 const TraceWriter& writer, runtime::ListFormat* listing, const Ending& ending,
-                const TraceCertifier& certifier, const BestTraces* best, double wall_s,
-                Invocation& invocation) {
+                const TraceCertifier& certifier, const BestTraces* best,
+                const PreferredTraces* preferred, double wall_s, Invocation& invocation) {
   const bool stopped = ending.exploration == "stopped" || certifier.is_asked();
   if (stopped && stop_flag().load() && !invocation.sink().has_errors()) {
     invocation.remark("stopped before the end: there may be more traces");
@@ -65,6 +72,7 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
     fields = best->fields() + (best->proof_fields().empty() ? fields : best->proof_fields());
   }
   if (ending.dead_end) fields += fmt::format("\"dead_end\":{},", *ending.dead_end);
+  if (preferred != nullptr) fields += preferred->fields();
   std::string in_all;
   if (options.search.up_to_symmetry) {
     fields += fmt::format("\"up_to_symmetry\":true,\"in_all\":{},", ending.in_all);
@@ -99,6 +107,7 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
                                   ending.exploration, certifier.remark(ending.exploration),
                                   writer.checked_remark()));
     if (best != nullptr) invocation.result(best->text());
+    if (preferred != nullptr) invocation.result(preferred->text());
   }
 }
 
@@ -106,7 +115,8 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
 /// to be listed to be counted.
 std::optional<int> count_only(const TracesOptions& options, const compiler::CompiledModel& model,
                               TraceCertifier& certifier, const BestTraces* best,
-                              std::chrono::steady_clock::time_point start, Invocation& invocation) {
+                              const PreferredTraces* preferred, StartTime start,
+                              Invocation& invocation) {
   const auto counted = count_model_traces(options.search, model, certifier, invocation);
   if (!counted && options.search.up_to_symmetry && !invocation.sink().has_errors()) {
     return std::nullopt;
@@ -118,13 +128,12 @@ std::optional<int> count_only(const TracesOptions& options, const compiler::Comp
   } else {
     certifier.decline("the traces were counted, not listed");
   }
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   if (!ending.complete) invocation.remark("stopped before the end: there may be more traces");
   if (ending.complete && counted->number == "0") point_to_explanation(options, invocation);
   const bool all = options.search.up_to_symmetry;
   const bool proved = best != nullptr && !best->proof_fields().empty();
   const auto fields =
-      (best != nullptr ? best->fields() : "") +
+      (best != nullptr ? best->fields() : "") + (preferred != nullptr ? preferred->fields() : "") +
       (proved ? best->proof_fields() : certifier.fields()) +
       (all ? fmt::format("\"up_to_symmetry\":true,\"in_all\":{},", ending.in_all) : "");
   if (invocation.options().json) {
@@ -132,7 +141,7 @@ std::optional<int> count_only(const TracesOptions& options, const compiler::Comp
         fmt::format("{{\"status\":\"ok\",\"traces\":{},\"complete\":{},\"exploration\":\"{}\","
                     "\"strategy\":\"{}\",{}\"timing\":{{\"wall_s\":{:.3f}}}}}\n",
                     counted->number, ending.complete && !certifier.reservations().any(),
-                    ending.exploration, counted->strategy, fields, wall.count()));
+                    ending.exploration, counted->strategy, fields, seconds_since(start)));
   } else {
     invocation.result(counted->number +
                       (all ? fmt::format(" up to symmetry, {} in all\n", ending.in_all) : "\n"));
@@ -193,24 +202,22 @@ bool is_usable(const TracesOptions& options, Invocation& invocation) {
                   "--format text and jsonl can");
   }
   const bool optimizes = options.model.best || !options.model.minimize.empty();
-  if (options.search.up_to_symmetry && optimizes) {
+  const bool folds = options.search.up_to_symmetry;
+  if (folds && optimizes)
     return refuse("--up-to-symmetry", "does not go with --minimize or --best");
-  }
-  if (!options.ended.empty() && (options.search.up_to_symmetry || optimizes)) {
+  if (!options.ended.empty() && (folds || optimizes)) {
     return refuse("--ended", "does not go with --up-to-symmetry, --minimize or --best");
   }
   if (options.model.best && !options.model.minimize.empty()) {
     return refuse("--best", "takes the model's own objectives; it does not go with --minimize");
   }
+  if (!options.prefer.empty() && (optimizes || folds || !options.certify.file.empty())) {
+    return refuse("--prefer", "does not go with --minimize, --best, --certify or --up-to-symmetry");
+  }
   if (options.count && options.search.from > 1) {
     return refuse("", "--count does not go with --from");
   }
   return true;
-}
-
-using StartTime = std::chrono::steady_clock::time_point;
-double seconds_since(StartTime start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 std::unique_ptr<runtime::ListFormat> listing_of(const TracesOptions& options,
@@ -243,8 +250,8 @@ TraceWriter::Form form_of(const TracesOptions& options, const compiler::Compilat
 /// Lists, draws or counts the traces of what was compiled; with `best` these are the best ones of
 /// the model `all`.
 int list_compiled(const TracesOptions& options, const compiler::Compilation& compilation,
-                  BestTraces* best, const compiler::CompiledModel* all, StartTime start,
-                  Invocation& invocation) {
+                  BestTraces* best, const compiler::CompiledModel* all,
+                  const PreferredTraces* preferred, StartTime start, Invocation& invocation) {
   const auto& model = compilation.model;
   const CertifyOption not_asked;
   std::optional<TraceCertifier> certifier;
@@ -262,7 +269,7 @@ int list_compiled(const TracesOptions& options, const compiler::Compilation& com
   };
   if (options.count && !options.check && options.ended.empty() && !model.has_constraints) {
     prove_optimum();
-    const auto code = count_only(options, model, *certifier, best, start, invocation);
+    const auto code = count_only(options, model, *certifier, best, preferred, start, invocation);
     if (code) return *code;
   }
   std::optional<TraceCheck> check;
@@ -291,8 +298,8 @@ int list_compiled(const TracesOptions& options, const compiler::Compilation& com
     certifier->conclude(ending->exploration, ending->searched);
     if (best != nullptr) best->adopt(*certifier);
   }
-  close_list(options, model, writer, listing.get(), *ending, *certifier, best, seconds_since(start),
-             invocation);
+  close_list(options, model, writer, listing.get(), *ending, *certifier, best, preferred,
+             seconds_since(start), invocation);
   return writer.count() == 0 && options.expect_traces ? 1 : 0;
 }
 
@@ -329,7 +336,7 @@ int list_witness(const TracesOptions& options, const compiler::Compilation& comp
       invocation.answered();
     }
   }
-  close_list(options, model, writer, listing.get(), {}, none, &best, seconds_since(start),
+  close_list(options, model, writer, listing.get(), {}, none, &best, nullptr, seconds_since(start),
              invocation);
   return proved ? 0 : 4;
 }
@@ -358,7 +365,8 @@ int list_best(const TracesOptions& options, compiler::Compilation& compilation, 
   }
   BestTraces best(compilation.model, invocation);
   if (best.optimum().none) {
-    return list_compiled(options, compilation, &best, &compilation.model, start, invocation);
+    return list_compiled(options, compilation, &best, &compilation.model, nullptr, start,
+                         invocation);
   }
   const auto& search = options.search;
   const bool any_will_do = search.limit == 1 && search.order != "canonical" && !options.count &&
@@ -380,7 +388,7 @@ int list_best(const TracesOptions& options, compiler::Compilation& compilation, 
     return list_witness(options, compilation, best, start, invocation);
   }
   std::swap(compilation.model, *bounded);
-  return list_compiled(options, compilation, &best, &*bounded, start, invocation);
+  return list_compiled(options, compilation, &best, &*bounded, nullptr, start, invocation);
 }
 
 int list_traces(const TracesOptions& options, Invocation& invocation) {
@@ -409,7 +417,14 @@ int list_traces(const TracesOptions& options, Invocation& invocation) {
   if (!options.model.minimize.empty() || options.model.best) {
     return list_best(options, *compilation, start, invocation);
   }
-  return list_compiled(options, *compilation, nullptr, nullptr, start, invocation);
+  std::optional<PreferredTraces> preferred;
+  if (!options.prefer.empty()) {
+    preferred = PreferredTraces::of(options.prefer, *compilation, invocation);
+    if (!preferred) return 0;
+    compilation->model = preferred->model(compilation->model);
+  }
+  const auto* chosen = preferred ? &*preferred : nullptr;
+  return list_compiled(options, *compilation, nullptr, nullptr, chosen, start, invocation);
 }
 
 }  // namespace
@@ -444,6 +459,13 @@ Command traces_command() {
       .list(ListForm::kOneEachTime);
   command.flag("--best", options->model.best,
                "The same with what the model's `minimize` statements say, in their order");
+  command
+      .option("--prefer", options->prefer,
+              "Only traces with a minimal set of true `Ab` atoms; may be repeated")
+      .details(
+          "Circumscription: no other trace has a proper subset of them. `Ab,Stuck`: both together. "
+          "Repeated: the first one counts most. --minimize \"count ...\" asks for the fewest.")
+      .list(ListForm::kOneEachTime);
   add_search_options(command, options->search);
   command.heading("What is told");
   command.flag("--count", options->count, "Print only the number of traces");

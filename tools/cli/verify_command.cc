@@ -13,6 +13,7 @@
 #include "compiler/base/ground_name.h"
 #include "compiler/base/json.h"
 #include "compiler/base/temporary_folder.h"
+#include "compiler/base/words.h"
 #include "compiler/reference/temporal_truth.h"
 #include "harness/config/ledger.h"
 #include "harness/report/text_layout.h"
@@ -28,6 +29,7 @@
 #include "tools/app/trace_check.h"
 #include "tools/app/trace_feed.h"
 #include "tools/app/trace_writer.h"
+#include "tools/app/unbounded.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/shared_options.h"
@@ -40,6 +42,7 @@ struct VerifyOptions {
   std::string property;
   CertifyOption certify;
   bool check = false;
+  bool unbounded = false;
   std::int64_t jobs = 0;
   std::string ledger;
 };
@@ -62,10 +65,12 @@ struct CheckedProperty {
   PlanReservations reservations;  // why nothing was proved
   /// The plan's inputs on the way there (plan_inputs).
   std::vector<std::string> inputs;
-  std::string proof_origin;                      // what made it, if it was accepted
-  std::string proof_file;                        // where it is kept
-  std::optional<std::vector<RestsOn>> rests_on;  // none: no ledger was named
-  std::optional<PropertyBreak> broken;           // of a temporal property
+  std::string proof_origin;                        // what made it, if it was accepted
+  std::string proof_file;                          // where it is kept
+  std::optional<std::vector<RestsOn>> rests_on;    // none: no ledger was named
+  std::optional<PropertyBreak> broken;             // of a temporal property
+  std::optional<runtime::InductionAnswer> beyond;  // --unbounded, where it holds up to the horizon
+  std::vector<std::string> beyond_files;           // the kept proofs of the induction
 };
 
 /// Limit on conflicts for a proof of the contradiction where symmetry or cubes may do without one.
@@ -127,6 +132,9 @@ void prove(const CertifyOption& certify, TraceCertifier& certifier, CheckedPrope
 
 std::string verdict(const CheckedProperty& answer) {
   if (answer.violation) return "violated";
+  if (answer.beyond && answer.beyond->verdict != runtime::InductionVerdict::kHolds) {
+    return "inconclusive";
+  }
   return answer.exploration == runtime::Exploration::kStopped ? "inconclusive" : "holds";
 }
 
@@ -173,6 +181,42 @@ std::string trace_text(const compiler::CompiledModel& model, const runtime::Trac
   return out;
 }
 
+/// The answer of --unbounded.
+std::string beyond_text(const runtime::InductionAnswer& beyond) {
+  switch (beyond.verdict) {
+    case runtime::InductionVerdict::kHolds:
+      return fmt::format("holds at every timepoint (induction over {}, {}, proof checked)\n",
+                         base::counted(beyond.steps, "step"),
+                         base::counted(static_cast<std::int64_t>(beyond.invariants), "invariant"));
+    case runtime::InductionVerdict::kBroken:
+      return fmt::format(
+          "not decided beyond: a trace that ends at timepoint {} violates the property\n",
+          *beyond.broken_at);
+    case runtime::InductionVerdict::kUndecided:
+      return fmt::format("not decided beyond: induction over {} does not show it\n",
+                         base::counted(beyond.steps, "step"));
+    case runtime::InductionVerdict::kNotProved:
+      return "not decided beyond: the proof was not accepted\n";
+    case runtime::InductionVerdict::kStopped:
+      break;
+  }
+  return "not decided beyond: stopped before the end\n";
+}
+
+/// The same as a member of the document.
+nlohmann::ordered_json beyond_json(const CheckedProperty& answer) {
+  const auto& beyond = *answer.beyond;
+  const bool holds = beyond.verdict == runtime::InductionVerdict::kHolds;
+  nlohmann::ordered_json out;
+  out["holds"] = holds;
+  out["steps"] = beyond.steps;
+  out["invariants"] = beyond.invariants;
+  if (holds) out["proof"] = "checked";
+  if (beyond.broken_at) out["broken_at"] = *beyond.broken_at;
+  if (!answer.beyond_files.empty()) out["proof_files"] = answer.beyond_files;
+  return out;
+}
+
 std::string answer_text(const compiler::CompiledModel& model, const CheckedProperty& answer) {
   if (answer.violation) {
     auto out = fmt::format("violated at timepoint {}\n", answer.violation->length());
@@ -192,7 +236,8 @@ std::string answer_text(const compiler::CompiledModel& model, const CheckedPrope
     out += ", and every path of the plan has ended by then";
   }
   if (answer.is_open_ended) out += ", of executions that end by then: others go on";
-  return out + '\n';
+  out += '\n';
+  return answer.beyond ? out + beyond_text(*answer.beyond) : out;
 }
 
 /// The known discrepancies that the answer rests on.
@@ -265,6 +310,7 @@ std::string answer_json(const compiler::CompiledModel& model, const CheckedPrope
   }
   if (!answer.proof_origin.empty()) out["proof_origin"] = answer.proof_origin;
   if (!answer.proof_file.empty()) out["proof_file"] = answer.proof_file;
+  if (answer.beyond) out["unbounded"] = beyond_json(answer);
   out["timing"]["wall_s"] = wall_s;
   return base::json_text(out) + '\n';
 }
@@ -299,6 +345,9 @@ int answer_verify(const VerifyOptions& options, Invocation& invocation) {
   const auto compilation = compile_models(model_options, invocation);
   if (!compilation) return 0;
   const auto& model = compilation->model;
+  auto unbounded =
+      options.unbounded ? Unbounded::of(*compilation, options.model, invocation) : std::nullopt;
+  if (options.unbounded && !unbounded) return 0;
   const base::TemporaryFolder folder("proof");  // for one that nobody asked to keep
   const auto certify = proof_option(options, folder);
   TraceCertifier certifier(certify, options.model.models, model, invocation);
@@ -328,6 +377,10 @@ int answer_verify(const VerifyOptions& options, Invocation& invocation) {
     answer.proof = kByCubes;
   } else if (holds) {
     prove(certify, certifier, answer);
+  }
+  if (holds && unbounded) {
+    answer.beyond = unbounded->decide(options.certify.file.empty() ? "" : certifier.proof_file());
+    answer.beyond_files = unbounded->proof_files();
   }
   if (*ledger) {
     const auto name = harness::ledger_name(options.model.models.front(), options.ledger);
@@ -370,7 +423,7 @@ int answer_verify(const VerifyOptions& options, Invocation& invocation) {
     }
   }
   if (answer.violation) return 1;
-  return answer.exploration == runtime::Exploration::kStopped ? 4 : 0;
+  return verdict(answer) == "inconclusive" ? 4 : 0;
 }
 
 }  // namespace
@@ -401,6 +454,8 @@ Command verify_command() {
   command.heading("The property");
   command.option("--property", options->property, "Formula that should hold at all times")
       .required();
+  command.flag("--unbounded", options->unbounded,
+               "Also beyond the horizon: k-induction with a checked proof, no plan");
   add_certify_option(command, options->certify);
   add_cubes_option(command, options->jobs);
   command

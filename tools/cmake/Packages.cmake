@@ -33,9 +33,12 @@ set(PARALLAX_SHARED_PACKAGE libparallax${PROJECT_VERSION_MAJOR}.${PROJECT_VERSIO
 set(CPACK_DEBIAN_SHARED_PACKAGE_NAME ${PARALLAX_SHARED_PACKAGE})
 set(CPACK_DEBIAN_SHARED_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_SHARED_PACKAGE_SHLIBDEPS ON)
-# Its ldconfig is run by dpkg's trigger.
-set(CPACK_DEBIAN_SHARED_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/generated/packages/triggers)
-file(WRITE ${PROJECT_BINARY_DIR}/generated/packages/triggers "activate-noawait ldconfig\n")
+# Its ldconfig is run by dpkg's trigger; `shlibs` tells dpkg-shlibdeps which package a client needs.
+set(control ${PROJECT_BINARY_DIR}/generated/packages)
+set(CPACK_DEBIAN_SHARED_PACKAGE_CONTROL_EXTRA ${control}/triggers ${control}/shlibs)
+file(WRITE ${control}/triggers "activate-noawait ldconfig\n")
+file(WRITE ${control}/shlibs "libparallax ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} \
+${PARALLAX_SHARED_PACKAGE} (>= ${PROJECT_VERSION})\n")
 # The program simulates built-in worlds for it.
 set(CPACK_DEBIAN_SHARED_PACKAGE_RECOMMENDS "parallax (= ${PROJECT_VERSION}-1)")
 set(CPACK_COMPONENT_SHARED_DESCRIPTION

@@ -185,7 +185,8 @@ function(parallax_headers target)
 endfunction()
 
 # parallax_install_library(LIBRARY): exports the interface library with everything below it, so that
-# `find_package(parallax)` finds it. Headers lie in include/parallax, rooted as in the repository.
+# `find_package(parallax)` finds it. Headers lie in include/parallax, by their folders in the repository, and name each
+# other as clients name them: `parallax/runtime/...`. So no folder of a client is hidden, and none hides theirs.
 function(parallax_install_library library)
   set(open ${library})
   set(below "")
@@ -210,12 +211,21 @@ function(parallax_install_library library)
   install(TARGETS ${library} ${below} EXPORT parallaxTargets COMPONENT development
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/parallax COMPONENT development
     FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/parallax COMPONENT development)
+  install(CODE "set(headers \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/parallax\")"
+    COMPONENT development)
+  install(SCRIPT ${PROJECT_SOURCE_DIR}/tools/cmake/installed_headers.cmake COMPONENT development)
   install(EXPORT parallaxTargets NAMESPACE parallax:: DESTINATION ${config} COMPONENT development)
   include(CMakePackageConfigHelpers)
   set(modules ${PROJECT_SOURCE_DIR}/tools/cmake)
   set(made ${PROJECT_BINARY_DIR}/generated/parallaxConfig)
+  set(exported "")
+  foreach(name ${library} ${below})
+    get_target_property(name ${name} EXPORT_NAME)
+    string(APPEND exported " parallax::${name}")
+  endforeach()
+  set(headers ${CMAKE_INSTALL_INCLUDEDIR})
   configure_package_config_file(${modules}/parallaxConfig.cmake.in ${made}.cmake
-    INSTALL_DESTINATION ${config})
+    INSTALL_DESTINATION ${config} PATH_VARS headers)
   write_basic_package_version_file(${made}Version.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${made}.cmake ${made}Version.cmake ${modules}/FindCadical.cmake
     ${modules}/FindGmp.cmake ${modules}/FindOde.cmake DESTINATION ${config}
@@ -301,7 +311,9 @@ function(parallax_test name)
   if(NOT arg_LABELS)
     set(arg_LABELS fast)
   endif()
-  set_tests_properties(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT 600)
+  # Python is Debian's, whose modules tools/packages has: a version manager's stand-in starts thirty processes each time.
+  set_tests_properties(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT 600
+    ENVIRONMENT_MODIFICATION "PATH=path_list_prepend:/usr/bin")
   if("fast" IN_LIST arg_LABELS)
     add_dependencies(fast_tests ${name})
   endif()

@@ -10,9 +10,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <condition_variable>
-#include <mutex>
-#include <thread>
 
 #include "compiler/base/clock_time.h"
 #include "compiler/base/json.h"
@@ -21,6 +18,7 @@
 #include "harness/campaign/row_statistics.h"
 #include "harness/report/report.h"
 #include "tools/app/rates_identity.h"
+#include "tools/app/timed_stop.h"
 #include "tools/app/trace_feed.h"
 #include "tools/diff/rate_change.h"
 
@@ -29,43 +27,6 @@ namespace {
 
 using Clock = base::SteadyClock;
 using OrderedJson = nlohmann::ordered_json;
-
-constexpr auto kSlice = std::chrono::milliseconds(20);
-
-/// A flag that is raised when the time is over, or another flag is.
-class TimedStop {
- public:
-  TimedStop(double seconds, const std::atomic<bool>& other)
-      : end_(base::from_now(seconds)), thread_([this, &other] { watch(other); }) {}
-  ~TimedStop() {
-    {
-      const std::lock_guard lock(mutex_);
-      done_ = true;
-    }
-    changed_.notify_all();
-    thread_.join();
-  }
-  TimedStop(const TimedStop&) = delete;
-  TimedStop& operator=(const TimedStop&) = delete;
-
-  std::atomic<bool>& flag() { return flag_; }
-
- private:
-  void watch(const std::atomic<bool>& other) {
-    std::unique_lock lock(mutex_);
-    while (!done_ && Clock::now() < end_ && !other.load()) {
-      changed_.wait_until(lock, std::min(end_, Clock::now() + kSlice));
-    }
-    if (!done_) flag_.store(true);
-  }
-
-  std::atomic<bool> flag_{false};
-  Clock::time_point end_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool done_ = false;
-  std::thread thread_;
-};
 
 /// The first error of a context, as the reason why a side cannot be run.
 std::string first_error(const Context& context) {

@@ -78,7 +78,8 @@ Diagnosis diagnose(const std::atomic<bool>& stop) {
   const bool has_folder = checks.back().health == Health::kWorks;
   checks.push_back(has_folder ? try_solver(runner) : untried("solver"));
   checks.push_back(has_folder ? try_simulator(runner) : untried("simulator"));
-  checks.push_back(try_mujoco());
+  checks.push_back(try_engine(harness::EngineKind::kMujoco));
+  checks.push_back(try_engine(harness::EngineKind::kBullet));
   checks.push_back(try_sdf());
   checks.push_back(try_urdf());
   checks.push_back(try_mjcf());

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "harness/engine/mujoco_module.h"
+#include "harness/engine/engine_module.h"
 #include "tools/doctor/trials.h"
 
 namespace parallax::tools {
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kHeight_m = 10.0, kTime_s = 1.0;
 
-harness::WorldSpec falling_ball() {
+harness::WorldSpec falling_ball(harness::EngineKind engine) {
   harness::BodySpec ball;
   ball.name = "ball";
   ball.mass_kg = 1.0;
@@ -21,24 +21,26 @@ harness::WorldSpec falling_ball() {
   shape.size_m = {0.1, 0.1, 0.1};
   ball.shapes = {shape};
   harness::WorldSpec spec;
-  spec.engine = harness::EngineKind::kMujoco;
+  spec.engine = engine;
   spec.bodies = {ball};
   return spec;
 }
 
 }  // namespace
 
-CheckUp try_mujoco() {
-  CheckUp check{.name = "MuJoCo", .package = "libmujoco-dev", .is_needed = false};
-  const std::string why = harness::why_no_mujoco();
+CheckUp try_engine(harness::EngineKind engine) {
+  CheckUp check{.name = harness::engine_title(engine),
+                .package = harness::engine_package(engine),
+                .is_needed = false};
+  const std::string why = harness::why_no_engine(engine);
   if (!why.empty()) {
     check.health = Health::kAbsent;
     check.found = why;
     check.remedy = fmt::format("build again with {} installed", check.package);
     return check;
   }
-  const auto spec = falling_ball();
-  const auto world = harness::make_mujoco_world(spec);
+  const auto spec = falling_ball(engine);
+  const auto world = harness::make_world(spec);
   const std::vector<harness::Placement> start{{spec.bodies.front().p_WB, 0.0, 0.0}};
   bool sane = !world->reset(start, 1);
   const auto steps = std::lround(kTime_s / spec.solver.timestep_s);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compiler/base/subprocess.h"
+#include "harness/world/world_spec.h"
 #include "tools/doctor/doctor.h"
 
 namespace parallax::tools {
@@ -32,7 +33,8 @@ class TrialRunner {
 
 CheckUp try_solver(const TrialRunner& runner);
 CheckUp try_simulator(const TrialRunner& runner);
-CheckUp try_mujoco();
+/// An engine that is a module: a ball falls as far as it has to.
+CheckUp try_engine(harness::EngineKind engine);
 CheckUp try_sdf();
 CheckUp try_urdf();
 CheckUp try_mjcf();

@@ -52,7 +52,11 @@ std::optional<RuleUnit> guard_against(const LearnedRule& opening, const LearnedR
   for (auto& literal : out.literals) {
     for (auto& term : literal.terms) {
       const auto other = terms.find(term.index);
-      if (term.kind == RuleTerm::Kind::kHead && other != terms.end()) term = other->second;
+      if (term.kind != RuleTerm::Kind::kHead || other == terms.end()) continue;
+      if (term.step != 0 && other->second.kind == RuleTerm::Kind::kConstant) return std::nullopt;
+      const auto step = term.step;
+      term = other->second;
+      term.step = step;
     }
   }
   return out;

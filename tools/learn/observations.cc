@@ -4,6 +4,7 @@
 
 #include "compiler/base/integer_range.h"
 #include "compiler/repair/condition_literal.h"
+#include "compiler/repair/number_term.h"
 #include "harness/region/fluent_binding.h"
 #include "runtime/enumerate/path_admission.h"
 
@@ -32,9 +33,10 @@ bool is_word(const compiler::TypedModel& typed, const compiler::Symbol& symbol) 
   });
 }
 
-/// The constants of a sort, and the numbers of its ranges.
+/// The constants of a sort, and the numbers of its ranges, each once.
 std::vector<std::string> elements_of(const compiler::TypedModel& typed, compiler::SortId sort) {
   auto out = compiler::constants_of(typed, sort);
+  if (!compiler::numerals_of(typed, sort).empty()) return out;
   for (std::uint32_t i = 0; i < typed.sorts.size(); ++i) {
     const compiler::SortId below(i);
     if (!typed.is_subsort(below, sort)) continue;
@@ -98,8 +100,35 @@ LearnVocabulary::LearnVocabulary(const compiler::TypedModel& typed) : typed_(typ
 
 std::size_t LearnVocabulary::number_of(const std::string& constant) {
   const auto [place, is_new] = numbers_.emplace(constant, constants_.size());
-  if (is_new) constants_.push_back(constant);
+  if (is_new) {
+    constants_.push_back(constant);
+    values_.push_back(compiler::number_of(constant, {}));
+  }
   return place->second;
+}
+
+std::optional<std::size_t> LearnVocabulary::symbol_named(const std::string& name) const {
+  const auto found = std::find_if(symbols_.begin(), symbols_.end(),
+                                  [&](const auto& symbol) { return symbol.name == name; });
+  if (found == symbols_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - symbols_.begin());
+}
+
+std::optional<std::size_t> LearnVocabulary::constant_named(const std::string& name) const {
+  const auto found = numbers_.find(name);
+  return found == numbers_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<std::size_t> LearnVocabulary::stepped(std::size_t number, int by) const {
+  if (!values_[number]) return std::nullopt;
+  std::int64_t value = 0;
+  if (__builtin_add_overflow(*values_[number], by, &value)) return std::nullopt;
+  return constant_named(std::to_string(value));
+}
+
+bool LearnVocabulary::is_less(std::size_t left, std::size_t right) const {
+  const auto known = [&](std::size_t number) { return number < values_.size() && values_[number]; };
+  return known(left) && known(right) && *values_[left] < *values_[right];
 }
 
 const std::vector<std::size_t>& LearnVocabulary::domain(compiler::SortId sort) const {

@@ -44,6 +44,13 @@ class LearnVocabulary {
   const std::string& constant(std::size_t number) const { return constants_[number]; }
   std::size_t constant_count() const { return constants_.size(); }
   const std::vector<std::size_t>& domain(compiler::SortId sort) const;
+  std::optional<std::size_t> symbol_named(const std::string& name) const;
+  std::optional<std::size_t> constant_named(const std::string& name) const;
+  /// The constant for this number plus `by`. None: the constant is no number, or the sum is no
+  /// number of the model.
+  std::optional<std::size_t> stepped(std::size_t number, int by) const;
+  /// Are both numbers, and the first one less?
+  bool is_less(std::size_t left, std::size_t right) const;
   /// None: there is no such atom; the arguments are outside of its sorts.
   std::optional<std::size_t> atom(std::size_t symbol,
                                   const std::vector<std::size_t>& arguments) const;
@@ -59,6 +66,7 @@ class LearnVocabulary {
   std::vector<Symbol> symbols_;
   std::vector<Atom> atoms_;
   std::vector<std::string> constants_, left_out_;
+  std::vector<std::optional<std::int64_t>> values_;  // of constants that are numbers
   std::map<std::string, std::size_t> numbers_, by_name_;
   std::vector<std::size_t> first_atoms_;                       // by symbol
   std::map<std::uint32_t, std::vector<std::size_t>> domains_;  // by sort

@@ -41,18 +41,24 @@ class UnitQuestion {
  private:
   static constexpr auto kOpen = static_cast<std::size_t>(-1);
 
+  /// kOpen: a number that the model does not have.
   std::size_t value(const RuleTerm& term) const {
     if (term.kind == RuleTerm::Kind::kConstant) return term.index;
-    return term.kind == RuleTerm::Kind::kHead ? binding_[term.index] : own_[term.index];
+    const auto plain = term.kind == RuleTerm::Kind::kHead ? binding_[term.index] : own_[term.index];
+    return term.step == 0 ? plain : vocabulary_.stepped(plain, term.step).value_or(kOpen);
   }
 
   Truth truth(const RuleLiteral& literal) {
     if (literal.equation) {
-      const bool same = value(literal.terms[0]) == value(literal.terms[1]);
-      return same != literal.negated ? Truth::kTrue : Truth::kFalse;
+      const auto left = value(literal.terms[0]), right = value(literal.terms[1]);
+      const bool holds = literal.less ? vocabulary_.is_less(left, right) : left == right;
+      return holds != literal.negated ? Truth::kTrue : Truth::kFalse;
     }
     arguments_.clear();
-    for (const auto& term : literal.terms) arguments_.push_back(value(term));
+    for (const auto& term : literal.terms) {
+      arguments_.push_back(value(term));
+      if (arguments_.back() == kOpen) return Truth::kFalse;
+    }
     const auto atom = vocabulary_.atom(literal.symbol, arguments_);
     return atom ? state_[*atom] : Truth::kFalse;
   }
@@ -120,7 +126,9 @@ class RuleNames {
   const std::vector<std::string>& own(std::size_t unit) const { return own_[unit]; }
   std::string term(const RuleTerm& term, std::size_t unit) const {
     if (term.kind == RuleTerm::Kind::kConstant) return vocabulary_.constant(term.index);
-    return term.kind == RuleTerm::Kind::kHead ? head_[term.index] : own_[unit][term.index];
+    const auto& name =
+        term.kind == RuleTerm::Kind::kHead ? head_[term.index] : own_[unit][term.index];
+    return term.step == 0 ? name : name + (term.step > 0 ? "+1" : "-1");
   }
   std::string call(std::size_t symbol, const std::vector<RuleTerm>& terms, std::size_t unit) const {
     std::string out = vocabulary_.symbols()[symbol].name + "(";
@@ -139,8 +147,9 @@ class RuleNames {
 std::string print_literal(const RuleLiteral& literal, std::size_t unit, const RuleNames& names,
                           const LearnVocabulary& vocabulary, const std::string& time) {
   if (literal.equation) {
-    return names.term(literal.terms[0], unit) + (literal.negated ? "!=" : "=") +
-           names.term(literal.terms[1], unit);
+    const auto* relation =
+        literal.less ? (literal.negated ? ">=" : "<") : (literal.negated ? "!=" : "=");
+    return names.term(literal.terms[0], unit) + relation + names.term(literal.terms[1], unit);
   }
   const auto atom = names.call(literal.symbol, literal.terms, unit);
   const bool fluent = vocabulary.symbols()[literal.symbol].kind == compiler::SymbolKind::kFluent;

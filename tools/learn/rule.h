@@ -10,18 +10,21 @@
 
 namespace parallax::tools {
 
-/// A variable of the rule's head, one of the unit's own, or a constant.
+/// A variable of the rule's head, one of the unit's own, or a constant; of a number also its
+/// neighbour, `x+1` or `x-1`.
 struct RuleTerm {
   enum class Kind : std::uint8_t { kHead, kOwn, kConstant };
   Kind kind = Kind::kHead;
   std::size_t index = 0;
+  int step = 0;
   friend bool operator==(const RuleTerm&, const RuleTerm&) = default;
 };
 
-/// An atom at the time of the event, or an equation of two terms.
+/// An atom at the time of the event, or a comparison of two terms.
 struct RuleLiteral {
   bool equation = false;
   bool negated = false;  // of an equation
+  bool less = false;     // of an equation: `<` instead of `=`
   std::size_t symbol = 0;
   std::vector<RuleTerm> terms;
   friend bool operator==(const RuleLiteral&, const RuleLiteral&) = default;

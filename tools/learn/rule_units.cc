@@ -1,13 +1,14 @@
 // Conditions that a rule may be made of: those that hold in one step, cheapest first.
 //
-// The head of the rule has variables, and the step binds them to constants. Units are equations
-// between head variables and literals whose places take head variables or variables of their
-// own; each gets the sign under which it holds in the state before the step. Later stages add
-// conjunctions of two facts of the state, then constants as places, then conjunctions of three
-// facts. Constants of joined facts become variables unless they are the head's, and only facts
-// that such variables connect are joined, because others say no more than separate units. The
-// cost of a unit grows with its literals, its own variables, its constants and a negation, and a
-// literal without a head variable costs more.
+// The head of the rule has variables, and the step binds them to constants. Units are the
+// conditions that repairs are made of (compiler/repair/condition_literal.h): comparisons of head
+// variables, and literals whose places take head variables, their neighbours if they are numbers,
+// or variables of their own; each gets the sign under which it holds in the state before the step.
+// Later stages add conjunctions of two facts of the state, then constants as places, then
+// conjunctions of three facts. Constants of joined facts become variables unless they are the
+// head's, and only facts that such variables connect are joined, because others say no more than
+// separate units. The cost of a unit grows with its literals, its own variables, its constants and
+// a negation, and a literal without a head variable costs more.
 //
 // Cost: for each symbol the product of its places' choices, and the cube of the facts that are
 // joined; all of them are limited.
@@ -16,17 +17,24 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
+#include <string>
+#include <utility>
+
+#include "compiler/repair/condition_literal.h"
+#include "compiler/repair/number_term.h"
 
 namespace parallax::tools {
 
+using compiler::ConditionLiteral;
 using compiler::SortId;
 using compiler::SymbolKind;
 
 namespace {
 
 constexpr int kLiteral = 10, kPredicate = 9, kUnlike = 6, kConstant = 10, kEquation = 20;
-constexpr int kNegation = 1, kSome = 2, kWithoutHead = 3;
+constexpr int kNegation = 1, kSome = 2, kWithoutHead = 3, kStep = 2;
 constexpr std::size_t kMostEach = 4000;    // literals of one symbol with constants
 constexpr std::size_t kMostFacts = 120;    // that are joined
 constexpr std::size_t kMostJoined = 4000;  // conditions
@@ -39,10 +47,7 @@ class UnitMaker {
 
   std::vector<RuleUnit> make(UnitStage stage) {
     const bool constants = stage >= UnitStage::kConstants;
-    add_equations(constants);
-    for (std::size_t i = 0; i < vocabulary_.symbols().size(); ++i) {
-      if (vocabulary_.symbols()[i].kind != SymbolKind::kEvent) add_literals(i, constants);
-    }
+    add_plain(constants);
     if (stage >= UnitStage::kJoined) add_joined(stage >= UnitStage::kChained ? 3 : 2);
     std::stable_sort(out_.begin(), out_.end(),
                      [](const auto& a, const auto& b) { return a.cost < b.cost; });
@@ -52,91 +57,90 @@ class UnitMaker {
  private:
   const compiler::TypedModel& typed() const { return vocabulary_.typed(); }
 
-  void add_equations(bool constants) {
-    for (std::size_t i = 0; i < binding_.size(); ++i) {
-      const RuleTerm left{RuleTerm::Kind::kHead, i};
-      for (std::size_t j = i + 1; j < binding_.size(); ++j) {
-        if (binding_[i] == binding_[j]) continue;
-        if (!typed().sorts_overlap(head_.variables[i], head_.variables[j])) continue;
-        add_equation(left, true, {RuleTerm::Kind::kHead, j}, kUnlike);
-      }
-      const auto& domain = vocabulary_.domain(head_.variables[i]);
-      if (!constants || domain.size() > kMostFacts) continue;
-      for (const auto constant : domain) {
-        add_equation(left, constant != binding_[i], {RuleTerm::Kind::kConstant, constant},
-                     kEquation + (constant != binding_[i] ? kNegation : 0));
-      }
+  /// Literals of the language that repairs are written in, each with the sign under which it holds.
+  void add_plain(bool constants) {
+    std::vector<compiler::SortedVariable> variables;
+    std::map<std::string, std::size_t> places;
+    for (const auto sort : head_.variables) {
+      const auto name = "x" + std::to_string(variables.size());
+      places.emplace(name, variables.size());
+      variables.push_back({name, sort});
+    }
+    for (const auto& literal :
+         compiler::condition_literals(typed(), variables, kMostEach, constants)) {
+      auto unit = unit_of(literal, places);
+      if (!unit) continue;
+      const bool is_equation = literal.kind == ConditionLiteral::Kind::kEqual;
+      if (is_equation ? compare(*unit) : hold(*unit)) out_.push_back(*std::move(unit));
     }
   }
 
-  void add_equation(const RuleTerm& left, bool unlike, const RuleTerm& right, int cost) {
+  std::optional<RuleUnit> unit_of(const ConditionLiteral& literal,
+                                  const std::map<std::string, std::size_t>& places) const {
+    const bool is_equation = literal.kind == ConditionLiteral::Kind::kEqual;
+    // An atom comes with both signs; the state says which one holds.
+    if (literal.negated && !is_equation) return std::nullopt;
+    RuleLiteral out{is_equation, literal.negated, literal.less, 0, {}};
     RuleUnit unit;
-    unit.literals.push_back({true, unlike, 0, {left, right}});
-    unit.cost = cost;
-    out_.push_back(std::move(unit));
-  }
-
-  std::vector<RuleTerm> choices(SortId sort, bool constants) const {
-    std::vector<RuleTerm> out;
-    for (std::size_t i = 0; i < head_.variables.size(); ++i) {
-      if (typed().sorts_overlap(head_.variables[i], sort)) {
-        out.push_back({RuleTerm::Kind::kHead, i});
+    if (!is_equation) {
+      const auto symbol = vocabulary_.symbol_named(literal.symbol);
+      if (!symbol) return std::nullopt;
+      out.symbol = *symbol;
+    }
+    for (const auto& argument : literal.arguments) {
+      using Kind = compiler::LiteralArgument::Kind;
+      if (argument.kind == Kind::kSome) {
+        out.terms.push_back({RuleTerm::Kind::kOwn, unit.own.size()});
+        unit.own.push_back(vocabulary_.symbols()[out.symbol].sorts[out.terms.size() - 1]);
+      } else if (argument.kind == Kind::kConstant) {
+        const auto constant = vocabulary_.constant_named(argument.name);
+        if (!constant) return std::nullopt;
+        out.terms.push_back({RuleTerm::Kind::kConstant, *constant});
+      } else {
+        const auto stepped = compiler::stepped_variable(argument.name);
+        if (!stepped) return std::nullopt;  // values of functions are not among the observations
+        out.terms.push_back({RuleTerm::Kind::kHead, places.at(stepped->variable), stepped->by});
       }
     }
-    out.push_back({RuleTerm::Kind::kOwn, 0});
-    if (!constants) return out;
-    for (const auto constant : vocabulary_.domain(sort)) {
-      out.push_back({RuleTerm::Kind::kConstant, constant});
-    }
-    return out;
+    unit.literals.push_back(std::move(out));
+    return unit;
   }
 
-  void add_literals(std::size_t symbol, bool constants) {
-    const auto& sorts = vocabulary_.symbols()[symbol].sorts;
-    std::vector<std::vector<RuleTerm>> places;
-    std::size_t count = 1;
-    for (const auto sort : sorts) {
-      places.push_back(choices(sort, constants));
-      count = std::min(count * places.back().size(), kMostEach + 1);
-    }
-    if (count > kMostEach) return;
-    std::vector<std::size_t> at(places.size(), 0);
-    while (true) {
-      std::vector<RuleTerm> terms;
-      for (std::size_t i = 0; i < at.size(); ++i) terms.push_back(places[i][at[i]]);
-      add_literal(symbol, std::move(terms));
-      std::size_t i = at.size();
-      while (i > 0 && ++at[i - 1] == places[i - 1].size()) at[--i] = 0;
-      if (i == 0) break;
-    }
+  /// A comparison that holds and says more than the head does; its cost.
+  bool compare(RuleUnit& unit) const {
+    const auto& literal = unit.literals.front();
+    const auto& right = literal.terms[1];
+    const bool constant = right.kind == RuleTerm::Kind::kConstant;
+    // Two variables that are always the same are one.
+    if (!constant && !literal.less && !literal.negated && right.step == 0) return false;
+    unit.cost = constant ? kEquation + (literal.negated ? kNegation : 0) : kUnlike;
+    if (literal.less || right.step != 0) unit.cost += kStep;
+    return value_of(unit, vocabulary_, state_, binding_) == Truth::kTrue;
   }
 
-  void add_literal(std::size_t symbol, std::vector<RuleTerm> terms) {
-    const auto& declared = vocabulary_.symbols()[symbol];
-    // An effect needs no condition on its own fluent; an opening may.
-    const bool effect = head_.kind == RuleKind::kInitiates || head_.kind == RuleKind::kTerminates;
-    if (effect && symbol == head_.fluent && terms == head_.terms) return;
-    if (head_.kind == RuleKind::kAdmits && symbol == head_.fluent) return;
-    RuleUnit unit;
-    bool about_head = terms.empty();
-    unit.cost = declared.kind == SymbolKind::kPredicate ? kPredicate : kLiteral;
-    for (std::size_t i = 0; i < terms.size(); ++i) {
-      auto& term = terms[i];
+  /// An atom of the state, with its sign and cost. False: it says nothing that is known.
+  bool hold(RuleUnit& unit) const {
+    const auto& literal = unit.literals.front();
+    if (head_.kind == RuleKind::kAdmits && literal.symbol == head_.fluent) return false;
+    bool about_head = literal.terms.empty(), is_stepped = false;
+    const auto kind = vocabulary_.symbols()[literal.symbol].kind;
+    unit.cost = kind == SymbolKind::kPredicate ? kPredicate : kLiteral;
+    for (const auto& term : literal.terms) {
       about_head = about_head || term.kind == RuleTerm::Kind::kHead;
+      is_stepped = is_stepped || term.step != 0;
       if (term.kind == RuleTerm::Kind::kConstant) unit.cost += kConstant;
-      if (term.kind != RuleTerm::Kind::kOwn) continue;
-      term.index = unit.own.size();
-      unit.own.push_back(declared.sorts[i]);
-      unit.cost += kSome;
+      if (term.kind == RuleTerm::Kind::kOwn) unit.cost += kSome;
+      if (term.step != 0) unit.cost += kStep;
     }
     if (!about_head) unit.cost += kWithoutHead;
-    unit.literals.push_back({false, false, symbol, std::move(terms)});
     const auto value = value_of(unit, vocabulary_, state_, binding_);
-    if (value == Truth::kUnknown) return;
+    if (value == Truth::kUnknown) return false;
     unit.negated = value == Truth::kFalse;
-    if (unit.negated && !fits(unit.literals.front())) return;
-    if (unit.negated) unit.cost += kNegation;
-    out_.push_back(std::move(unit));
+    if (!unit.negated) return true;
+    unit.cost += kNegation;
+    // If the model has no number `x+1`, the literal has no instance: its negation does not hold
+    // either.
+    return !is_stepped && fits(literal);
   }
 
   /// Is the sort of each head variable within that of its place? Otherwise there are no atoms
@@ -205,7 +209,7 @@ class UnitMaker {
     for (const auto fact : facts) {
       const auto& atom = vocabulary_.atoms()[fact];
       const auto& declared = vocabulary_.symbols()[atom.symbol];
-      RuleLiteral literal{false, false, atom.symbol, {}};
+      RuleLiteral literal{false, false, false, atom.symbol, {}};
       for (std::size_t k = 0; k < declared.sorts.size(); ++k) {
         const auto constant = atom.arguments[k];
         if (const auto head = head_term(constant, declared.sorts[k])) {

@@ -101,4 +101,13 @@ const NameMap& Documents::names(const std::string& path) {
   return *known;
 }
 
+const CompiledTexts& Documents::compiled(const std::string& path) {
+  constexpr double kMostSeconds = 1.0;  // somebody waits
+  const auto roots = roots_of(path, text_of());
+  const auto& root = roots.empty() ? path : roots.front();
+  auto& known = compiled_[root];
+  if (!known) known = std::make_unique<CompiledTexts>(root, texts_, kMostSeconds);
+  return *known;
+}
+
 }  // namespace parallax::tools::lsp

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "compiler/base/open_texts.h"
+#include "tools/lsp/compiled_texts.h"
 #include "tools/lsp/name_map.h"
 #include "tools/lsp/positions.h"
 #include "tools/lsp/project.h"
@@ -32,7 +33,10 @@ class Documents {
   bool change(const Json& params);
   bool close(const Json& params);
   /// Files may have changed on disk.
-  void forget_names() { names_.clear(); }
+  void forget_names() {
+    names_.clear();
+    compiled_.clear();
+  }
 
   const std::map<std::string, OpenDocument>& all() const { return documents_; }
   const base::OpenTexts& texts() const { return texts_; }
@@ -50,12 +54,15 @@ class Documents {
   Positions positions(const std::string& path) const { return {text(path), unit_}; }
   /// The declared names that a file sees; made at the first question after a change.
   const NameMap& names(const std::string& path);
+  /// The clauses of the first scenario or model that reads the file, likewise.
+  const CompiledTexts& compiled(const std::string& path);
 
  private:
   ColumnUnit unit_ = ColumnUnit::kUtf16;
   std::map<std::string, OpenDocument> documents_;  // by path
   base::OpenTexts texts_;                          // the same texts
   std::map<std::string, std::unique_ptr<NameMap>> names_;
+  std::map<std::string, std::unique_ptr<CompiledTexts>> compiled_;  // by scenario or model
 };
 
 }  // namespace parallax::tools::lsp

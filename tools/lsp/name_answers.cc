@@ -9,9 +9,11 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tools/lsp/file_text.h"
+#include "tools/lsp/last_trace.h"
 #include "tools/lsp/yaml_answers.h"
 
 namespace parallax::tools::lsp {
@@ -105,11 +107,17 @@ Json hover(Documents& documents, const Json& params) {
     }
     if (effects.size() > kMost)
       words += fmt::format("and {} more effect axioms\n", effects.size() - kMost);
+    if (at.name->kind == NameKind::kFluent) {
+      auto roots = roots_of(at.path, documents.text_of());
+      std::erase_if(roots, [](const auto& root) { return !is_yaml(root); });
+      words += last_values(at.name->name, roots);
+    }
     if (at.name->kind == NameKind::kSort) words += elements_of(*at.name, names);
   } else {
     words = is_yaml(at.path) ? yaml_hover(text, at.offset) : "";
     if (words.empty()) words = core_help(word_at(text, at.offset));
   }
+  words += documents.compiled(at.path).about(at.path, at.offset);
   if (words.empty()) return nullptr;
   return {{"contents", {{"kind", "markdown"}, {"value", words}}}};
 }
@@ -129,7 +137,10 @@ Json definition(Documents& documents, const Json& params) {
 Json references(Documents& documents, const Json& params) {
   const auto at = asked_place(documents, params);
   if (at.name == nullptr) return Json::array();
-  return locations(documents, documents.names(at.path).places(*at.name));
+  const auto& names = documents.names(at.path);
+  auto places = names.places(*at.name);
+  for (auto& perform : names.performs(*at.name)) places.push_back(std::move(perform));
+  return locations(documents, places);
 }
 
 Json highlights(Documents& documents, const Json& params) {

@@ -188,6 +188,20 @@ std::vector<NamedPlace> NameMap::places(const DeclaredName& name) const {
   return out;
 }
 
+std::vector<NamedPlace> NameMap::performs(const DeclaredName& event) const {
+  std::vector<NamedPlace> out;
+  if (event.kind != NameKind::kEvent) return out;
+  for (const auto& [path, words] : words_) {
+    if (!is_plan(path)) continue;
+    for (const auto& word : words) {
+      const auto* entry = find(word.key);
+      if (entry != nullptr && entry->event == event.name)
+        out.push_back({path, word.begin, word.end});
+    }
+  }
+  return out;
+}
+
 std::vector<std::string> NameMap::effects(const DeclaredName& name) const {
   std::vector<std::string> out;
   for (const auto& [of, axiom] : effects_) {

@@ -72,6 +72,8 @@ class NameMap {
   /// Every place of the name, by file and offset. Of a sort also its variables: the name and
   /// digits.
   std::vector<NamedPlace> places(const DeclaredName& name) const;
+  /// The places in plans that perform an event, by the entries of tables that name it.
+  std::vector<NamedPlace> performs(const DeclaredName& event) const;
   /// The effect axioms that have the name as their event or fluent, one line each.
   std::vector<std::string> effects(const DeclaredName& name) const;
 

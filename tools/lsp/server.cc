@@ -7,6 +7,7 @@
 #include "tools/lsp/server.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <array>
@@ -35,6 +36,7 @@ namespace parallax::tools::lsp {
 namespace {
 
 constexpr auto kQuiet = std::chrono::milliseconds(5);
+constexpr int kKeptBytes = 64 << 20;
 
 /// A question about open documents.
 struct Question {
@@ -263,6 +265,12 @@ class EditorServer {
 
 }  // namespace
 
-int serve_editor(int in, int out) { return EditorServer(in, out).run(); }
+int serve_editor(int in, int out) {
+  // A check takes about as much memory as the one before. Given back to the system in between, it
+  // would come back page by page, which takes longer than to parse the model.
+  ::mallopt(M_MMAP_THRESHOLD, kKeptBytes);
+  ::mallopt(M_TRIM_THRESHOLD, kKeptBytes);
+  return EditorServer(in, out).run();
+}
 
 }  // namespace parallax::tools::lsp

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/base/ground_name.h"
 #include "runtime/enumerate/path_admission.h"
 
 namespace parallax::tools {
@@ -89,40 +90,94 @@ SolveStatus EvidenceAdmission::goes(const Evidence& evidence, std::size_t t,
   return session_.solve(static_cast<Timepoint>(t), *assumptions);
 }
 
+/// Can it go on like that up to `t`?
+bool EvidenceAdmission::possible(const Evidence& evidence, std::size_t t,
+                                 std::optional<std::size_t> without, Answer& answer) {
+  const auto status = goes(evidence, t, without);
+  answer.stopped = answer.stopped || status == SolveStatus::kUnknown;
+  return status == SolveStatus::kSatisfiable;
+}
+
+/// Does the model forbid the event by itself in the state before it, and go on without it?
+bool EvidenceAdmission::refuses(const Evidence& evidence, std::size_t step, Answer& answer) {
+  const auto t = step + 1;
+  const auto with = facts(evidence, t, t, std::nullopt);
+  if (with && session_.solve(static_cast<Timepoint>(t), *with) != SolveStatus::kUnsatisfiable) {
+    return false;
+  }
+  return possible(evidence, t, step, answer);
+}
+
 EvidenceAdmission::Answer EvidenceAdmission::ask(const Evidence& evidence,
                                                  std::optional<std::size_t> refuse_at) {
   Answer answer;
-  std::optional<std::size_t> without;
-  const auto possible = [&](std::size_t t) {
-    const auto status = goes(evidence, t, without);
-    answer.stopped = answer.stopped || status == SolveStatus::kUnknown;
-    return status == SolveStatus::kSatisfiable;
-  };
   const auto last = evidence.steps.size();
-  if (possible(last)) {
+  if (possible(evidence, last, std::nullopt, answer)) {
     answer.reached = last;
     answer.whole = true;
     return answer;
   }
-  for (std::size_t t = 0; t <= last && !answer.stopped; ++t) {
-    if (possible(t)) {
-      answer.reached = t;
-      continue;
+  // The first timepoint that it cannot reach, of which the last is one.
+  const auto first_impossible = [&](std::size_t from, std::optional<std::size_t> without) {
+    auto beyond = last;
+    while (from < beyond && !answer.stopped) {
+      const auto middle = from + (beyond - from) / 2;
+      if (possible(evidence, middle, without, answer)) {
+        from = middle + 1;
+      } else {
+        beyond = middle;
+      }
     }
-    if (t == 0) answer.start = false;
-    if (t == 0 || refuse_at != t - 1 || answer.stopped) return answer;
-    // Does the model forbid the event by itself in the state before it?
-    const auto with = facts(evidence, t, t, std::nullopt);
-    if (with && session_.solve(static_cast<Timepoint>(t), *with) != SolveStatus::kUnsatisfiable) {
-      return answer;
-    }
-    without = t - 1;
-    if (!possible(t)) return answer;
-    answer.refused = true;
-    answer.reached = t;
-  }
-  answer.whole = answer.reached == last;
+    return beyond;
+  };
+  const auto t = first_impossible(0, std::nullopt);
+  if (t == 0) answer.start = false;
+  if (t > 0) answer.reached = t - 1;
+  if (t == 0 || refuse_at != t - 1 || answer.stopped) return answer;
+  if (!refuses(evidence, t - 1, answer)) return answer;
+  answer.refused = true;
+  answer.whole = possible(evidence, last, t - 1, answer);
+  answer.reached = answer.whole ? last : first_impossible(t, t - 1) - 1;
   return answer;
+}
+
+EvidenceAdmission::Answer EvidenceAdmission::ask_whole(const Evidence& evidence,
+                                                       std::optional<std::size_t> refuse_at) {
+  Answer answer;
+  const auto last = evidence.steps.size();
+  answer.whole = possible(evidence, last, std::nullopt, answer);
+  if (answer.whole || answer.stopped || !refuse_at) return answer;
+  // It may go on without the event only if it comes to it, and no further.
+  const auto at = *refuse_at;
+  answer.refused = (at + 1 == last || !possible(evidence, at + 1, std::nullopt, answer)) &&
+                   possible(evidence, at, std::nullopt, answer) && refuses(evidence, at, answer);
+  answer.whole = answer.refused && (at + 1 == last || possible(evidence, last, at, answer));
+  return answer;
+}
+
+std::optional<std::string> EvidenceAdmission::left_open(const Evidence& evidence,
+                                                        const std::set<std::string>& symbols) {
+  const auto of_these = [&](const auto& each) {
+    return symbols.contains(base::symbol_of(each.first));
+  };
+  const bool failed = !evidence.steps.empty() && evidence.steps.back().failed;
+  const auto last = evidence.steps.size() - (failed ? 1 : 0);
+  auto others = evidence;
+  for (auto& state : others.states) std::erase_if(state, of_these);
+  auto known = facts(others, last, last + 1, std::nullopt);
+  if (!known) return std::nullopt;
+  for (std::size_t t = 0; t <= last; ++t) {
+    for (const auto& each : evidence.states[t]) {
+      if (!of_these(each)) continue;
+      const auto literal = index_.find(AtomKind::kHoldsAt, each.first, static_cast<Timepoint>(t));
+      if (!literal) continue;
+      known->push_back(each.second ? ~*literal : *literal);
+      const auto other = session_.solve(static_cast<Timepoint>(last), *known);
+      known->pop_back();
+      if (other == SolveStatus::kSatisfiable) return each.first;
+    }
+  }
+  return std::nullopt;
 }
 
 Evidence::State EvidenceAdmission::impossible(const Evidence& evidence, std::size_t t) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,13 @@ class EvidenceAdmission {
   };
   /// `refuse_at`: a step whose event the world refused, which the model may forbid.
   Answer ask(const Evidence& evidence, std::optional<std::size_t> refuse_at = std::nullopt);
+  /// Only whether it goes to the end, which takes fewer calls where it does not.
+  Answer ask_whole(const Evidence& evidence, std::optional<std::size_t> refuse_at);
+
+  /// A fluent of these symbols that the model leaves open on the evidence: with the same events,
+  /// and the same values of all others, it may be otherwise. Up to a last event that failed.
+  std::optional<std::string> left_open(const Evidence& evidence,
+                                       const std::set<std::string>& symbols);
 
   /// The fluents observed at `t` that are each impossible in the model after the observations
   /// before; all fluents observed there if none of them is impossible by itself.
@@ -76,6 +84,9 @@ class EvidenceAdmission {
                                                       std::optional<std::size_t> without);
   runtime::SolveStatus goes(const Evidence& evidence, std::size_t t,
                             std::optional<std::size_t> without);
+  bool possible(const Evidence& evidence, std::size_t t, std::optional<std::size_t> without,
+                Answer& answer);
+  bool refuses(const Evidence& evidence, std::size_t step, Answer& answer);
 
   runtime::SolverSession session_;
   compiler::AtomIndex index_;

@@ -15,13 +15,16 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "harness/config/validate_list.h"
 #include "tools/repair/experiment.h"
 #include "tools/repair/experiment_runs.h"
+#include "tools/repair/plan_runs.h"
 #include "tools/repair/ranking.h"
 #include "tools/repair/repeats.h"
 #include "tools/repair/validation.h"
@@ -58,6 +61,7 @@ class Experiments {
     auto proposed = propose_repairs(last_ ? *last_ : first_, context_);
     if (!proposed) return proposed;
     auto& result = *proposed;
+    if (first_.start && !run_from_start(result)) return context_.sink().already_reported();
     if (!tell_apart(result)) return context_.sink().already_reported();
     if (runs_ != nullptr && !context_.stopped() && !runs_->close()) {
       return context_.sink().already_reported();
@@ -66,6 +70,25 @@ class Experiments {
   }
 
  private:
+  /// The world excluded the start, so that no run was made: the plan is run from the start of the
+  /// first proposal, and what is seen orders the proposals as random sequences do.
+  base::Status run_from_start(RepairResult& result) {
+    if (result.proposals.empty() || context_.stopped() || !forbidden().empty()) return base::Unit{};
+    auto loaded = load_to_execute(first_, context_);
+    if (!loaded) return base::Unit{};
+    auto seen =
+        runs_of_plan(*std::move(loaded), *result.proposals.front().text, experiments_, context_);
+    if (seen.empty()) return base::Unit{};
+    auto& choosing = first_.sequences.choosing;
+    choosing.insert(choosing.begin(), std::make_move_iterator(seen.begin()),
+                    std::make_move_iterator(seen.end()));
+    first_.memo = std::make_shared<SequenceMemo>();
+    auto proposed = propose_repairs(first_, context_);
+    if (!proposed) return context_.sink().already_reported();
+    result = *std::move(proposed);
+    return base::Unit{};
+  }
+
   /// Makes experiments that tell the likeliest proposals apart, until no two can be told apart.
   base::Status tell_apart(RepairResult& result) {
     if (!may_be_made(result)) return base::Unit{};
@@ -297,8 +320,35 @@ class Experiments {
     result.tied_hidden = result.tied - std::min(result.tied, all.size());
     compare_traces(first_, all, context_);
     hold_against_sequences(first_, result, context_);
+    hold_against_plans(result);
     result.remarks.insert(result.remarks.begin(), remarks_.begin(), remarks_.end());
     return result;
+  }
+
+  /// Runs other plans with the model of the first proposal, and asks each proposal about them.
+  void hold_against_plans(RepairResult& result) {
+    const auto first = std::find_if(result.proposals.begin(), result.proposals.end(),
+                                    [](const Proposal& each) { return each.text.has_value(); });
+    if (first == result.proposals.end() || context_.stopped()) return;
+    const auto before = context_.sink();
+    const auto others =
+        harness::scenarios_to_validate(first_.loaded.scenario.file, context_.files(),
+                                       context_.sink(), context_.form().allow_outside);
+    context_.sink() = before;
+    if (!others || others->empty()) return;
+    if (const auto why = forbidden(); !why.empty()) {
+      remarks_.push_back("no other plan was run: " + why);
+      return;
+    }
+    const auto plans = runs_of_other_plans(*others, *first->text, experiments_, context_);
+    for (auto& proposal : result.proposals) {
+      if (!proposal.text || proposal.changes == Proposal::Changes::kPlan) continue;
+      for (const auto& plan : plans) {
+        const auto held = verify(*proposal.text, {}, plan.runs, context_);
+        proposal.verdict.plans.push_back(
+            {plan.scenario, plan.runs.size(), held.validated, held.refuted_by});
+      }
+    }
   }
 
   const RepairOptions& options_;

@@ -59,14 +59,29 @@ class SequenceExplorer {
         options_(options),
         context_(context) {}
 
-  base::Result<Explored> run() {
+  /// Finds what sequences are made of; false: nothing begins anywhere, as it was stopped.
+  base::Result<bool> prepare() {
     auto& sink = context_.sink();
     auto loop = ClosedLoop::make(loaded_, context_);
     if (!loop) return sink.already_reported();
     symbols_ = (*loop)->symbols();
     if (!find_starts(**loop)) return sink.already_reported();
-    if (starts_.empty()) return std::move(out_);  // stopped
+    if (starts_.empty()) return false;
     find_events((*loop)->plan());
+    return true;
+  }
+
+  std::vector<std::string> event_names() const {
+    std::vector<std::string> out;
+    for (const auto& event : events_) out.push_back(event.event);
+    return out;
+  }
+
+  base::Result<Explored> run() {
+    auto& sink = context_.sink();
+    const auto prepared = prepare();
+    if (!prepared) return sink.already_reported();
+    if (!*prepared) return std::move(out_);
     if (events_.empty()) {
       out_.skipped.emplace_back("no event of the plan can be asked for by itself");
       return std::move(out_);
@@ -191,12 +206,9 @@ class SequenceExplorer {
     if (number % 2 == 0 && !known_.empty()) {
       const auto& run = known_[draw(random, place++, known_.size())];
       const auto length = draw(random, place++, run.steps.size() + 1);
-      for (std::size_t i = 0; i < length; ++i) {
-        const auto found = std::find_if(events_.begin(), events_.end(), [&](const auto& event) {
-          return event.event == run.steps[i].event;
-        });
-        if (found != events_.end()) out.push_back(&*found);
-      }
+      std::vector<std::string> names;
+      for (std::size_t i = 0; i < length; ++i) names.push_back(run.steps[i].event);
+      out = performs_of(names);
     }
     const auto more = 1 + draw(random, place++, kRandomEvents);
     for (std::uint64_t i = 0; i < more; ++i) {
@@ -205,13 +217,45 @@ class SequenceExplorer {
     return out;
   }
 
+  /// The start that looks like this, or the first one.
+  const std::vector<compiler::FluentId>& start_like(const Evidence::State& state) const {
+    const auto looks_like = [&](const std::vector<compiler::FluentId>& start) {
+      std::set<std::string> holds;
+      for (const auto fluent : start) holds.insert(symbols_->name(fluent));
+      return std::all_of(state.begin(), state.end(), [&](const auto& each) {
+        return holds.contains(each.first) == each.second;
+      });
+    };
+    const auto found = std::find_if(starts_.begin(), starts_.end(), looks_like);
+    return found == starts_.end() ? starts_.front() : *found;
+  }
+
+  std::vector<const harness::PlannedPerform*> performs_of(
+      const std::vector<std::string>& names) const {
+    std::vector<const harness::PlannedPerform*> out;
+    for (const auto& name : names) {
+      const auto found = std::find_if(events_.begin(), events_.end(),
+                                      [&](const auto& event) { return event.event == name; });
+      if (found != events_.end()) out.push_back(&*found);
+    }
+    return out;
+  }
+
   CampaignTrace trace(std::int64_t number) const {
+    if (options_.given) {
+      const auto given = options_.given(number);
+      return trace_of(number, performs_of(given.events), start_like(given.start));
+    }
     const harness::CounterRng random({options_.seed, base::fnv1a64("learn: sequence"),
                                       harness::DrawPhase::kCertify,
                                       static_cast<std::uint64_t>(number), 0});
-    const auto events = sequence(random, number);
+    return trace_of(number, sequence(random, number), starts_[draw(random, 0, starts_.size())]);
+  }
+
+  CampaignTrace trace_of(std::int64_t number,
+                         const std::vector<const harness::PlannedPerform*>& events,
+                         const std::vector<compiler::FluentId>& start) const {
     auto out = empty_trace(number, events.size());
-    const auto& start = starts_[draw(random, 0, starts_.size())];
     out.key = fmt::format("sequence {};", number);
     for (std::size_t t = 0; t < out.points.size(); ++t) {
       out.points[t].holds = start;
@@ -283,6 +327,17 @@ class SequenceExplorer {
 };
 
 }  // namespace
+
+base::Result<std::vector<std::string>> sequence_events(const ScenarioModel& loaded,
+                                                       const ExploreOptions& options,
+                                                       Context& context) {
+  const std::vector<Evidence> none;
+  const harness::SimulatorFactory unused;
+  SequenceExplorer explorer(loaded, none, unused, options, context);
+  const auto prepared = explorer.prepare();
+  if (!prepared) return context.sink().already_reported();
+  return explorer.event_names();
+}
 
 base::Result<Explored> explore(const ScenarioModel& loaded, const std::vector<Evidence>& known,
                                const harness::SimulatorFactory& make_simulator,

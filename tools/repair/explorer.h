@@ -22,6 +22,12 @@ struct ExploreOptions {
   bool all_events = false;
   /// Where the sequences begin, by what holds; empty: in the initial states of the model.
   std::vector<Evidence::State> starts = {};
+  /// Instead of random ones: the events of the sequence with a number, and where it begins.
+  struct Sequence {
+    Evidence::State start;
+    std::vector<std::string> events;
+  };
+  std::function<Sequence(std::int64_t)> given = {};
   std::filesystem::path run_dir;
   std::string tool_version;
   std::function<void(const harness::CampaignProgress&)> progress;
@@ -33,6 +39,11 @@ struct Explored {
   std::vector<std::string> skipped;  // sequences that could not be simulated, and why
   bool of_plan = false;              // the model has other events, and the plan's alone were drawn
 };
+
+/// The events, by name, that sequences are made of, as `options` say.
+base::Result<std::vector<std::string>> sequence_events(const ScenarioModel& loaded,
+                                                       const ExploreOptions& options,
+                                                       Context& context);
 
 /// Simulates random sequences of events, each once, and records them in a run folder. The events
 /// are those that the plan performs, with the plan's arguments, and the same (or, if asked for, all

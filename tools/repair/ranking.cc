@@ -2,14 +2,14 @@
 //
 // First come proposals that follow most runs to their end; those that follow none come last, and
 // behind them those that agree with fewer runs than the unchanged model does. Among
-// them a split of the start comes first where the runs show that it is the cause, then what most of
-// the random sequences of events bear out. Then they are ordered by size, then precautions before
-// splits of the start before other changes, then specific ones before those that let anything
-// happen, and at last by oddity. Only the first few have their traces compared with the model's:
-// among equals the change that permits the fewest new traces comes first, then the one that forbids
-// the fewest. Neighbours that the order cannot distinguish are tied, which is told. Proposals as
-// well founded as the first one that admit fewer runs to their end were refuted by experiments and
-// are dropped.
+// them a split of the start comes first where the runs show that it is the cause, then models that
+// leave no fluent open, then what most of the random sequences of events bear out. Then they are
+// ordered by size, then precautions before splits of the start before other changes, then specific
+// ones before those that let anything happen, and at last by oddity. Only the first few have their
+// traces compared with the model's: among equals the change that permits the fewest new traces
+// comes first, then the one that forbids the fewest. Neighbours that the order cannot distinguish
+// are tied, which is told. Proposals as well founded as the first one that admit fewer runs to
+// their end were refuted by experiments and are dropped.
 
 #include "tools/repair/ranking.h"
 
@@ -33,8 +33,8 @@ int group_of(const Proposal& proposal) {
 bool likelier(const Proposal& a, const Proposal& b) {
   const auto key = [](const Proposal& each) {
     return std::tuple(each.agrees_less, each.only_begins(), each.unexplained, !each.is_told_cause,
-                      each.unvalidated, each.size, group_of(each), each.open,
-                      ~each.verdict.runs_whole, each.oddity);
+                      !each.verdict.leaves_open.empty(), each.unvalidated, each.size,
+                      group_of(each), each.open, ~each.verdict.runs_whole, each.oddity);
   };
   return key(a) < key(b);
 }

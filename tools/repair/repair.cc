@@ -86,12 +86,21 @@ void hold_against_sequences(const RepairInput& input, RepairResult& result,
     hold_against(*proposal.text, input.sequences.fresh, context, proposal.verdict);
   }
   result.sequences = context.stopped() ? 0 : input.sequences.fresh.size();
+  if (context.stopped()) result.choosing = 0;
 }
 
-bool is_refuted(const Proposal& proposal, const RepairResult& result) {
-  return result.sequences > 0 && proposal.meets_sequences() &&
-         (proposal.verdict.validated < result.choosing ||
-          proposal.verdict.fresh_right < result.sequences);
+bool is_refuted_by_sequence(const Proposal& proposal, const RepairResult& result) {
+  return proposal.meets_sequences() && (proposal.verdict.validated < result.choosing ||
+                                        proposal.verdict.fresh_right < result.sequences);
+}
+
+std::optional<std::string> refutation(const Proposal& proposal, const RepairResult& result) {
+  for (const auto& plan : proposal.verdict.plans) {
+    if (plan.right < plan.runs) return plan.scenario + ": " + plan.refuted_by;
+  }
+  if (!is_refuted_by_sequence(proposal, result)) return std::nullopt;
+  const auto& by = proposal.verdict.refuted_by;
+  return "a random sequence of events" + (by.empty() ? "" : ": " + by);
 }
 
 base::Result<RepairResult> propose_repairs(const RepairOptions& options, Context& context) {

@@ -56,7 +56,10 @@ base::Status add_plan_proposals(const RepairInput& input, RepairResult& result, 
 /// Holds the proposals against the fresh random sequences.
 void hold_against_sequences(const RepairInput& input, RepairResult& result, const Context& context);
 /// Does one of the random sequences refute it?
-bool is_refuted(const Proposal& proposal, const RepairResult& result);
+bool is_refuted_by_sequence(const Proposal& proposal, const RepairResult& result);
+/// Does such a sequence, or a run of another plan, refute it? Says which: "second.yaml: Go(r2)";
+/// none: neither.
+std::optional<std::string> refutation(const Proposal& proposal, const RepairResult& result);
 
 /// Evidence of the runs for a proposal, and its cost, as sentences.
 std::vector<std::string> proposal_sentences(const Proposal& proposal, const RepairResult& result);

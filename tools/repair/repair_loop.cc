@@ -24,14 +24,12 @@
 #include "compiler/base/json.h"
 #include "compiler/base/words.h"
 #include "harness/campaign/campaign.h"
+#include "harness/config/validate_list.h"
 #include "harness/report/report.h"
-#include "tools/app/closed_loop.h"
-#include "tools/app/own_identity.h"
 #include "tools/app/run_coverage.h"
-#include "tools/app/trace_feed.h"
-#include "tools/app/version.h"
 #include "tools/repair/apply.h"
 #include "tools/repair/lost_starts.h"
+#include "tools/repair/plan_runs.h"
 #include "tools/repair/ranking.h"
 #include "tools/repair/scenario_copy.h"
 #include "tools/repair/trace_numbers.h"
@@ -103,6 +101,14 @@ class Rounds {
     const auto first_input = context_.files().inputs().size();
     auto loaded = load_recorded_scenario(folder, header_, ScenarioUse::kRun, context_);
     if (!loaded) return sink.already_reported();
+    const auto others = harness::scenarios_to_validate(loaded->scenario.file, context_.files(),
+                                                       sink, context_.form().allow_outside);
+    if (!others) return sink.already_reported();
+    for (const auto& other : *others) {  // what they read is copied, too
+      if (!load_scenario_model(other.text, context_, {.as_run = true})) {
+        return sink.already_reported();
+      }
+    }
     auto copy =
         ScenarioCopy::make(loaded->scenario, out / "files", first_file, first_input, context_);
     if (!copy) return sink.already_reported();
@@ -143,8 +149,7 @@ class Rounds {
     if (!files) return sink.already_reported();
     first->files = *std::move(files);
     if (!apply_proposal(*first, base::WriteGate(true), context_)) return sink.already_reported();
-    refuted_by_.reset();
-    if (is_refuted(*first, *found)) refuted_by_ = first->verdict.refuted_by;
+    refuted_by_ = refutation(*first, *found);
     round.words = first->words;
     round.effects = first->effects;
     round.patch = patch_from_here(first->files);
@@ -192,32 +197,13 @@ class Rounds {
   }
 
   base::Result<CampaignResult> campaign(ScenarioModel& loaded, const std::string& folder) {
-    auto& sink = context_.sink();
     harness::CampaignOptions options;
     header_.asked.apply(loaded.scenario, options);
     if (header_.max_runs > 0) loaded.scenario.limits.max_runs = header_.max_runs;
-    const auto simulator = options_.experiments.simulator(loaded);
-    if (!simulator) return sink.already_reported();
-    std::error_code error;
     // Draws other starts than those of the repair, which are clean by construction.
     options.seed = header_.seed + loop_.rounds.size();
-    options.jobs = options_.experiments.jobs;
     options.run_dir = folder;
-    options.start_folder = fs::current_path(error).string();
-    options.scenario_hash = loaded.sources_hash;
-    options.tool_version = kVersion;
-    record_identity(loaded.scenario, options);
-    options.stop = &context_.stop();
-    options.progress = options_.experiments.progress;
-    auto& files = context_.files();
-    if (loaded.scenario.execution == harness::Execution::kClosedLoop) {
-      auto feed = ClosedLoop::make(loaded, context_);
-      if (!feed) return sink.already_reported();
-      return harness::run_loop_campaign(loaded.scenario, **feed, *simulator, options, files, sink);
-    }
-    EnumeratedTraces traces(loaded, context_,
-                            {.all_hits = options.all_hits, .split_initial = options.split_initial});
-    return harness::run_campaign(loaded.scenario, traces, *simulator, options, files, sink);
+    return run_plan(loaded, std::move(options), options_.experiments, context_);
   }
 
   /// Runs the copies as the recorded run was run; false: there is nothing more to repair.
@@ -255,8 +241,8 @@ class Rounds {
   /// The model that was applied last, which other events may refute.
   void end_without_loss() {
     if (!refuted_by_) return end(LoopEnd::kClean, "the run after it is clean");
-    end(LoopEnd::kRefuted, "the run after it is clean, but a random sequence of events refutes " +
-                               (refuted_by_->empty() ? "the model" : "it: " + *refuted_by_));
+    end(LoopEnd::kRefuted,
+        "the run after it is clean, but the model is refuted by " + *refuted_by_);
   }
 
   /// A run is also clean if the trace that went wrong no longer exists.
@@ -294,7 +280,7 @@ class Rounds {
   std::optional<ScenarioModel> original_;  // what was run at first
   std::optional<ScenarioCopy> copy_;
   std::vector<Evidence> evidence_;         // of the rounds that were
-  std::optional<std::string> refuted_by_;  // a random sequence refutes what was applied last
+  std::optional<std::string> refuted_by_;  // what was applied last
   RepairLoop loop_;
 };
 

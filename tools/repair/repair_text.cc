@@ -80,13 +80,20 @@ void add_properties(const Proposal& proposal, std::vector<std::string>& out) {
   }
 }
 
-/// What random sequences of events say of a proposal.
+/// The answer of random sequences of events to a proposal.
 std::string validation_sentence(const Proposal& proposal, const RepairResult& result) {
   constexpr std::size_t kMost = 80;  // characters of a sequence
   const auto& verdict = proposal.verdict;
   const auto all = base::counted(result.sequences, "fresh random sequence") +
                    (result.sequences_of_plan ? " of the plan's events" : " of events");
-  if (!is_refuted(proposal, result)) return "Also right on " + all + ".";
+  const bool is_right = !is_refuted_by_sequence(proposal, result);
+  if (result.sequences == 0) {
+    const auto runs = base::counted(result.choosing, "execution") + " that ordered the proposals";
+    return is_right ? "Also right on " + runs + "."
+                    : fmt::format("Right on {} of {}; refuted by {}.", verdict.validated, runs,
+                                  verdict.refuted_by);
+  }
+  if (is_right) return "Also right on " + all + ".";
   const auto chosen = verdict.validated < result.choosing
                           ? fmt::format(", and on {} of the {} that ordered the proposals",
                                         verdict.validated, result.choosing)
@@ -140,8 +147,24 @@ std::vector<std::string> proposal_sentences(const Proposal& proposal, const Repa
   }
   out.push_back(first + fmt::format("; traces lost: {}, gained: {}.", number_text(effects.lost),
                                     number_text(effects.gained)));
-  if (result.sequences > 0 && proposal.meets_sequences())
+  if (result.sequences + result.choosing > 0 && proposal.meets_sequences())
     out.push_back(validation_sentence(proposal, result));
+  for (const auto& plan : verdict.plans) {
+    const auto name = "`" + plan.scenario + "`";
+    if (plan.runs == 0) {
+      out.push_back(fmt::format("{} could not be run with it.", name));
+    } else if (plan.right == plan.runs) {
+      out.push_back(fmt::format("Also right on {} of {}.", base::counted(plan.runs, "run"), name));
+    } else {
+      out.push_back(fmt::format("Right on {} of {} of {}; refuted by {}.", plan.right,
+                                base::counted(plan.runs, "run"), name, plan.refuted_by));
+    }
+  }
+  if (!verdict.leaves_open.empty()) {
+    out.push_back(
+        fmt::format("It leaves open when `{}` holds: no run can refute what it says of that.",
+                    verdict.leaves_open));
+  }
   if (verdict.runs_undemanded > 0) {
     out.push_back(fmt::format(
         "It follows {} only if events happen that nothing demands, and comes later for that.",
@@ -322,6 +345,7 @@ std::string repair_json(const RepairResult& result) {
                          {"precaution", proposal.precaution},
                          {"hides_failure", proposal.hides_failure},
                          {"only_begins", proposal.only_begins()},
+                         {"leaves_open", proposal.verdict.leaves_open},
                          {"runs_consistent", proposal.verdict.runs_consistent},
                          {"runs_to_the_end", proposal.verdict.runs_whole},
                          {"runs", result.runs},
@@ -331,10 +355,19 @@ std::string repair_json(const RepairResult& result) {
                          {"traces_gained", number_json(effects.gained)},
                          {"reaches_constraints", std::move(reaches)},
                          {"properties", std::move(properties)}});
-    if (result.sequences > 0 && proposal.meets_sequences()) {
+    if (result.sequences + result.choosing > 0 && proposal.meets_sequences()) {
       proposals.back()["sequences_right"] = proposal.verdict.fresh_right;
       proposals.back()["choosing_right"] = proposal.verdict.validated;
       proposals.back()["refuted_by"] = proposal.verdict.refuted_by;
+    }
+    if (!proposal.verdict.plans.empty()) {
+      auto& plans = proposals.back()["other_plans"] = Json::array();
+      for (const auto& plan : proposal.verdict.plans) {
+        plans.push_back({{"scenario", plan.scenario},
+                         {"runs", plan.runs},
+                         {"right", plan.right},
+                         {"refuted_by", plan.refuted_by}});
+      }
     }
     if (proposal.under > 0) proposals.back()["under"] = proposal.under;
   }

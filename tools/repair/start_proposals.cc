@@ -4,8 +4,9 @@
 // its starts are compared with the world's. An edit is right if the model then has a start of the
 // world and none that the world excludes. If no single edit is right, the best of them, by what is
 // left of the conflict, are each tried together with every other one, and so on, three at most.
-// What is right is then checked against the recorded runs and random sequences like any other
-// proposal. Cost: one compilation for each edit, at most 500 of one size.
+// If the model has no start of the world, a single edit has to be of an axiom without which it
+// has one; others are not tried. Each proposal is then checked against the recorded runs and random
+// sequences like any other. Cost: one compilation for each edit, at most 500 of one size.
 
 #include "tools/repair/start_proposals.h"
 
@@ -44,6 +45,7 @@ class StartSearch {
 
   FoundProposals run() {
     result_.edits = edits_.size();
+    find_blamed();
     std::vector<Tried> bases(1);
     for (std::size_t size = 1; size <= kMostStartEdits && !context_.stopped(); ++size) {
       auto tried = extend(bases);
@@ -79,10 +81,35 @@ class StartSearch {
     auto& step = scope.steps.emplace_back();
     step.differing = conflict_.differs;
     step.after = conflict_.wanted.front();
+    for (const auto* all : {&input_.evidence, &input_.sequences.choosing}) {
+      for (const auto& seen : *all) {
+        scope.states.insert(scope.states.end(), seen.states.begin(), seen.states.end());
+      }
+    }
     auto out = compiler::start_edits(domain_.ast, *domain_.typed, domain_.forms, scope);
     std::stable_sort(out.begin(), out.end(),
                      [](const Edit& a, const Edit& b) { return a.oddity < b.oddity; });
     return out;
+  }
+
+  /// Whatever an edit makes of an axiom, the others still exclude what they exclude together.
+  void find_blamed() {
+    if (conflict_.is_shared) return;
+    for (std::size_t i = 0; i < edits_.size() && !context_.stopped(); ++i) {
+      if (edits_[i].kind != Edit::Kind::kDropAxiom) continue;
+      std::string wrong;
+      const auto text = compiler::flat_text(domain_.ast, domain_.files, texts_.changes({i}));
+      const auto model = compile_text(text, 1, context_, wrong);
+      if (model && comparison_->ask(*model, conflict_).has_wanted) {
+        blamed_.insert(edits_[i].axioms.front());
+      }
+    }
+  }
+
+  bool is_blamed(const Edit& edit) const {
+    return blamed_.empty() ||
+           std::any_of(edit.axioms.begin(), edit.axioms.end(),
+                       [&](std::size_t axiom) { return blamed_.contains(axiom); });
   }
 
   std::vector<Tried> extend(const std::vector<Tried>& bases) {
@@ -92,6 +119,7 @@ class StartSearch {
       for (std::size_t i = 0; i < edits_.size() && out.size() < kMostStartTried; ++i) {
         if (context_.stopped()) return out;
         auto set = base.set;
+        if (set.empty() && !is_blamed(edits_[i])) continue;
         if (std::any_of(set.begin(), set.end(), [&](std::size_t j) { return meet(i, j); }))
           continue;
         set.push_back(i);
@@ -166,6 +194,7 @@ class StartSearch {
   const std::vector<Edit> edits_;
   const compiler::EditText texts_;
   FoundProposals result_;
+  std::set<std::size_t> blamed_;  // axioms; none: any edit may help
   std::pair<std::size_t, std::size_t> left_ = {~std::size_t(0), ~std::size_t(0)};
 };
 

@@ -1,29 +1,42 @@
 #include "tools/repair/validation.h"
 
 #include <algorithm>
-#include <iterator>
 #include <string>
 #include <utility>
 
 #include "compiler/base/temporary_folder.h"
 #include "tools/repair/explorer.h"
+#include "tools/repair/plan_runs.h"
 
 namespace parallax::tools {
 namespace {
 
 constexpr std::int64_t kSequences = 40;  // to choose by, and as many fresh ones
 
-/// Cuts a sequence at its first event that the world refused: there the world lets time pass, and
-/// the plan would have been told.
-void end_at_refusal(Evidence& seen) {
-  const auto failed = std::find_if(seen.steps.begin(), seen.steps.end(),
-                                   [](const auto& step) { return step.failed; });
-  if (failed == seen.steps.end()) return;
-  seen.steps.erase(std::next(failed), seen.steps.end());
-  seen.states.resize(std::min(seen.states.size(), seen.steps.size() + 1));
+}  // namespace
+
+std::vector<OtherPlan> runs_of_other_plans(const std::vector<harness::LocatedText>& scenarios,
+                                           const std::string& model,
+                                           const ExperimentOptions& options, Context& context) {
+  std::vector<OtherPlan> out;
+  for (const auto& other : scenarios) {
+    const auto before = context.sink();
+    auto loaded = load_scenario_model(other.text, context, {.as_run = true});
+    auto& plan = out.emplace_back(OtherPlan{other.text, {}});
+    if (loaded) plan.runs = runs_of_plan(*std::move(loaded), model, options, context);
+    context.sink() = before;
+  }
+  return out;
 }
 
-}  // namespace
+std::optional<ScenarioModel> load_to_execute(const RepairInput& input, Context& context) {
+  const auto before = context.sink();
+  auto loaded = load_scenario_model(input.loaded.scenario.file, context,
+                                    {.as_run = true, .execution = harness::Execution::kClosedLoop});
+  if (loaded) return *std::move(loaded);
+  context.sink() = before;
+  return std::nullopt;
+}
 
 base::Result<RandomSequences> random_sequences(const RepairInput& input,
                                                const ExperimentOptions& options, Context& context) {
@@ -32,14 +45,8 @@ base::Result<RandomSequences> random_sequences(const RepairInput& input,
   if (forbidden || input.loaded.world == nullptr || input.loaded.scenario.plan.empty()) {
     return RandomSequences();
   }
-  const auto before = sink;
-  const auto loaded =
-      load_scenario_model(input.loaded.scenario.file, context,
-                          {.as_run = true, .execution = harness::Execution::kClosedLoop});
-  if (!loaded) {
-    sink = before;  // a plan of traces alone
-    return RandomSequences();
-  }
+  const auto loaded = load_to_execute(input, context);
+  if (!loaded) return RandomSequences();  // a plan of traces alone
   const auto simulator = options.simulator(*loaded);
   if (!simulator) return sink.already_reported();
   const base::TemporaryFolder folder("validation");

@@ -13,6 +13,13 @@
 
 namespace parallax::tools {
 
+/// The answer of runs of another plan about a model.
+struct PlanAnswer {
+  std::string scenario;
+  std::size_t runs = 0, right = 0;  // those that the model follows to their end
+  std::string refuted_by;           // the first other one
+};
+
 /// Comparison of an edited model with the observations, made from the edited text alone.
 struct Verdict {
   bool admits = false;              // every run as far as it is needed
@@ -25,6 +32,9 @@ struct Verdict {
   std::size_t validated = 0;    // sequences, that chose it, that it follows to their end
   std::size_t fresh_right = 0;  // and fresh ones (hold_against)
   std::string refuted_by;       // the first other one: "Call(ground), Enter()"
+  /// A fluent that it leaves open, so that no run refutes what it says of it; empty: none.
+  std::string leaves_open;
+  std::vector<PlanAnswer> plans;
 };
 /// Effect of an edit on the traces of the scenario: its model with its plan, up to its horizon.
 struct TraceEffects {
@@ -33,15 +43,24 @@ struct TraceEffects {
   std::optional<bool> reaches;
 };
 
-/// The answers of random sequences, and of the traces, about models by their texts: it stays the
-/// same while runs are added.
+/// The answers of runs, of random sequences and of the traces about models by their texts: none of
+/// them changes while runs are added.
 struct SequenceMemo {
   struct Said {
     std::size_t validated = 0;
-    std::string refuted_by;
+    std::string refuted_by, leaves_open;
   };
   std::map<std::string, Said> by_text;
   std::map<std::string, TraceEffects> effects;
+  /// How a model follows a run.
+  struct RunAnswer {
+    std::vector<Evidence::Step> steps;
+    std::vector<Evidence::State> states;
+    std::optional<std::size_t> refuse_at;
+    EvidenceAdmission::Answer answer;
+    bool strictly = true;
+  };
+  std::map<std::string, std::vector<RunAnswer>> of_runs;  // by text
 
   const Said* find(const std::string& text) const {
     const auto found = by_text.find(text);

@@ -15,17 +15,7 @@
 namespace parallax::tools {
 namespace {
 
-constexpr std::string_view kNameMark = "@NAME@";
 constexpr std::size_t kLongestName = 64;
-
-std::string with_name(std::string_view text, std::string_view name) {
-  std::string filled(text);
-  for (std::size_t at = 0; (at = filled.find(kNameMark, at)) != std::string::npos;
-       at += name.size()) {
-    filled.replace(at, kNameMark.size(), name);
-  }
-  return filled;
-}
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
@@ -58,11 +48,27 @@ std::vector<ScaffoldFile> scaffold_files(std::string_view name, const ScaffoldKi
     const auto folder = shared ? std::string_view() : file.path.substr(0, slash);
     if (!shared && folder != kind.world && folder != kind.robot) continue;
     files.push_back({std::string(shared ? file.path : file.path.substr(slash + 1)),
-                     with_name(file.text, name)});
+                     with_mark(std::string(file.text), "NAME", name)});
   }
   std::sort(files.begin(), files.end(),
             [](const ScaffoldFile& a, const ScaffoldFile& b) { return a.name < b.name; });
   return files;
+}
+
+std::string with_mark(std::string text, std::string_view mark, std::string_view value) {
+  const std::string marked = fmt::format("@{}@", mark);
+  for (std::size_t at = 0; (at = text.find(marked, at)) != std::string::npos; at += value.size()) {
+    text.replace(at, marked.size(), value);
+  }
+  return text;
+}
+
+base::Status write_scaffold_file(const std::filesystem::path& folder, const ScaffoldFile& file,
+                                 const base::SourceFiles& read, base::DiagnosticSink& sink) {
+  const auto path = folder / file.name;
+  std::error_code ignored;  // the file itself says why it cannot be written
+  std::filesystem::create_directories(path.parent_path(), ignored);
+  return base::write_output(path.string(), file.text, read, sink, base::TextForm::kExact);
 }
 
 base::Status write_scaffold(const std::string& folder, const std::vector<ScaffoldFile>& files,
@@ -74,16 +80,10 @@ base::Status write_scaffold(const std::string& folder, const std::vector<Scaffol
     }
     return sink.error_about(codes::kFileNotWritable, folder, std::strerror(errno));
   }
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const auto path = std::filesystem::path(folder) / files[i].name;
-    if (base::write_output(path.string(), files[i].text, read, sink, base::TextForm::kExact)) {
-      continue;
-    }
+  for (const ScaffoldFile& file : files) {
+    if (write_scaffold_file(folder, file, read, sink)) continue;
     std::error_code ignored;
-    for (std::size_t done = 0; done < i; ++done) {
-      std::filesystem::remove(std::filesystem::path(folder) / files[done].name, ignored);
-    }
-    std::filesystem::remove(folder, ignored);
+    std::filesystem::remove_all(folder, ignored);  // it is all of our own making
     return sink.already_reported();
   }
   return base::Unit{};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,13 @@ std::string wrong_scenario_name(std::string_view name);
 
 /// The files of a scenario that runs as it is, sorted by name.
 std::vector<ScaffoldFile> scaffold_files(std::string_view name, const ScaffoldKind& kind);
+
+/// The text with a value in the place of each "@MARK@".
+std::string with_mark(std::string text, std::string_view mark, std::string_view value);
+
+/// Writes one file below `folder`, with the folders on its way.
+base::Status write_scaffold_file(const std::filesystem::path& folder, const ScaffoldFile& file,
+                                 const base::SourceFiles& read, base::DiagnosticSink& sink);
 
 /// Makes `folder` and writes the files into it. Reports kUsage where something is there already and
 /// kFileNotWritable where it cannot be written; then nothing is left behind.

@@ -94,6 +94,38 @@ TEST_CASE("completion: an open occurrence gives a rule for the atom, a hidden on
   CHECK(exported.has(":- happens(X1,X2), not reason_happens(X1,X2).\n"));
 }
 
+TEST_CASE("founded reasons ask for the reasons of completed atoms, or are refused") {
+  const std::string ways =
+      "option founded on\nrange time 0 1\nfluent F()\nsort room\nroom A, B, C\n"
+      "predicate Door(room,room)\npredicate Way(room,room)\ncompletion Way\n"
+      "[room1,room2] Door(room1,room2) -> Way(room1,room2).\n"
+      "[room1,room2,room3] Way(room1,room2) & Way(room2,room3) -> Way(room1,room3).\n"
+      "[room1,room2] Door(room1,room2) <-> (room1=A & room2=B | room1=B & room2=C |\n"
+      "  room1=C & room2=B).\nnoninertial F\n";
+  const Exported exported(ways);
+  CHECK(exported.has("reason_way(Room2,Room3)"));
+  check_answer_sets(ways, 4);
+  check_answer_sets(ways + "HoldsAt(F(),0).\nWay(A,A).\n", 2);
+  const Exported hidden(
+      "option founded on\nrange time 0 1\nevent E()\nevent G()\n"
+      "[time] ({event} Happens(event,time)) -> Happens(E(),time).\n"
+      "completion Happens\n");
+  CHECK(hidden.places() == Strings{"E3051 5:1-57"});
+}
+
+TEST_CASE("counts and sums become aggregates over an auxiliary of their own") {
+  const std::string items =
+      "range time 0 1\nsort item\nitem A, B, C\nsort weight: integer\nrange weight 1 9\n"
+      "function Weight(item): weight\nWeight(A)=2.\nWeight(B)=3.\nWeight(C)=4.\n"
+      "fluent In(item)\nevent Load(item)\n[item,time] Initiates(Load(item),In(item),time).\n"
+      "[item] !HoldsAt(In(item),0).\n[time] count{item: Happens(Load(item),time)}<=2.\n"
+      "[time] sum{item: Weight(item): HoldsAt(In(item),time)}<=6.\n";
+  const Exported exported(items);
+  CHECK(exported.has("#count{ Item : counted_1(Item,Time) } > 2"));
+  CHECK(exported.has("#sum{ "));
+  check_answer_sets(items, 6);
+}
+
 TEST_CASE("a number of more than 32 bits is reported where it stands") {
   const Exported exported("range time 0 1\nfluent F()\nHoldsAt(F(),0) | 3000000000=1.\n");
   CHECK(exported.places() == Strings{"E3050 3:18-27"});

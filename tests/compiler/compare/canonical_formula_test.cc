@@ -58,6 +58,11 @@ TEST_CASE("variables are told apart by all places where they stand") {
 
 TEST_CASE("an inner quantifier may use the name of an outer one") {
   CHECK(canonical("[a] P(a) -> ({a} Q(a))") == canonical("[a1] P(a1) -> ({a2} Q(a2))"));
+  CHECK(canonical("count{a,b: P(a) & Q(b)}>=2") == canonical("count{b1,a3: Q(b1)&P(a3)} >= 2"));
+  CHECK(canonical("[a] sum{b: W(b,a): Q(b)}=2") == canonical("[a2] 2=sum{b3: W(b3,a2): Q(b3)}"));
+  CHECK(canonical("count{a: P(a)}>=2") != canonical("count{a: P(a)}>=3"));
+  CHECK(canonical("count{a: P(a)}>=2 & {a} Q(a)") ==
+        canonical("({a2} Q(a2)) & count{a1: P(a1)}>=2"));
   CHECK(canonical("([a] P(a)) & ([a] Q(a))") == canonical("([a1] P(a1)) & ([a2] Q(a2))"));
 }
 

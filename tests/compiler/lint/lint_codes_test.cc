@@ -206,8 +206,16 @@ TEST_CASE("formulas that take back what they say when the horizon grows") {
               "completion Happens\n"));
   CHECK(depends("[time] ({time1} Happens(Up(A),time1)) -> Initiates(Up(B),F(B),time).\n"));
   CHECK(depends("predicate Ever(a)\n[a,time] Happens(Up(a),time) -> Ever(a).\ncompletion Ever\n"));
+  CHECK(depends("count{time: Happens(Up(A),time)}>=1.\n"));
+  CHECK(depends("2>count{time: Happens(Up(A),time)} -> HoldsAt(F(A),1).\n"));
+  CHECK(depends("count{time: Happens(Up(A),time)}!=1.\n"));
+  CHECK(depends("sum{time: -1: Happens(Up(A),time)}<=1.\n"));
+  CHECK(depends("[time] count{a: !({time1} Happens(Up(a),time1))}<1 | HoldsAt(F(A),time).\n"));
   for (const std::string stays :
-       {"[time] HoldsAt(F(A),time) -> {a} Happens(Up(a),time).\n",
+       {"count{time: Happens(Up(A),time)}<=1.\n",
+        "[time] count{a: HoldsAt(F(a),time)}=1 -> sum{a: 2: HoldsAt(F(a),time+1)}>3.\n",
+        "[time] count{time1: time1<time & Happens(Up(A),time1)}>=2 -> Happens(Up(B),time).\n",
+        "[time] HoldsAt(F(A),time) -> {a} Happens(Up(a),time).\n",
         "[time] HoldsAt(F(A),time) -> Happens(Up(B),time+1).\n",
         "[time] HoldsAt(F(A),time) -> HoldsAt(F(B),time+2).\n",
         "[time] HoldsAt(F(A),time) -> {time1} time1<time & Happens(Up(B),time1).\n",

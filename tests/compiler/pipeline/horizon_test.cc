@@ -65,8 +65,9 @@ bool begins(const compiler::CompiledModel& model, runtime::SolverSession& sessio
 
 TEST_CASE("a trace, cut off, is a trace of the shorter horizon") {
   int compared = 0, warned = 0, lost = 0;
-  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
-    const auto text = random_model(seed, kBruteForceSize).print();
+  for (std::uint64_t seed = 1; seed <= 600; ++seed) {
+    const RandomAdditions additions{.aggregates = seed % 2 == 0};
+    const auto text = random_model(seed, kBruteForceSize, additions).print();
     CAPTURE(text);
     const AtHorizon shorter(text, 2), longer(text, 3);
     if (!shorter.result || !longer.result) continue;

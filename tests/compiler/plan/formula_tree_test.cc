@@ -76,6 +76,11 @@ TEST_CASE("a formula of a binding knows its variables and parameters") {
   REQUIRE(scopes.tree);
   CHECK(leaves(*scopes.tree) == "i i#0 i#0 i#1 i#1 i");
 
+  const auto sums = read_formula("count{i: On(i,?x)}>=2 & sum{j: W(j): F(j)}=1 & F(i)");
+  REQUIRE(sums.tree);
+  CHECK(leaves(*sums.tree) == "i#0 i#0 ?x@0 j#1 j#1 j#1 i");
+  CHECK(printed(*sums.tree) == "count{i: On(i,?x)}>=2 & sum{j: W(j): F(j)}=1 & F(i)");
+
   const auto words = read_formula("exists i j. On(i,j)");
   REQUIRE(words.tree);
   CHECK(leaves(*words.tree) == "i#0 j#1 i#0 j#1");

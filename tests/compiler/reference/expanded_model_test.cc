@@ -39,6 +39,23 @@ TEST_CASE("a tree has the value that its connectives give it") {
   }
 }
 
+TEST_CASE("a compared sum adds the weights of its true parts, and is forgotten with its node") {
+  FormulaTrees trees;
+  const auto a = trees.atom(0), b = trees.atom(1);
+  const auto truth = FormulaTrees::kTruth;
+  const auto size = trees.size();
+  const FormulaTrees::Sum sum{compiler::CompareOp::kEqual, 3, {2, 5, 1}};
+  (void)trees.compared({compiler::CompareOp::kLess, 0, {1}}, {a});
+  trees.rewind(size);
+  const auto made = trees.compared(sum, {a, b, truth});
+  CHECK(trees.value(made, {1, 0}));
+  CHECK_FALSE(trees.value(made, {1, 1}));
+  CHECK_FALSE(trees.value(made, {0, 0}));
+  CHECK(trees.atoms_of(made) == std::vector<std::uint32_t>{0, 1});
+  CHECK(trees.compared({compiler::CompareOp::kGreater, 2, {3}}, {truth}) == truth);
+  CHECK(trees.compared({compiler::CompareOp::kGreater, 0, {}}, {}) == FormulaTrees::kFalsity);
+}
+
 TEST_CASE("conjuncts and atoms of a tree, and what rewinding forgets") {
   FormulaTrees trees;
   const auto a = trees.atom(3), b = trees.atom(1);

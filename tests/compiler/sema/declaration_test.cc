@@ -212,6 +212,11 @@ TEST_CASE("options: those with a meaning are kept, wrong ones are located") {
   CHECK((options.trajectory && options.manual_release && options.model_diff));
   CHECK_FALSE((options.renaming || options.time_diff || options.show_predicates));
   CHECK(checked.model->symbols[*checked.model->find_symbol("F")].manual_release);
+  CHECK_FALSE(options.founded.has_value());
+  CHECK(CheckedText("option founded on\nrange time 0 1\n").model->options.founded.has_value());
+  CHECK_FALSE(CheckedText("option founded on\noption founded off\nrange time 0 1\n")
+                  .model->options.founded.has_value());
+  CHECK(places("option founded yes\n") == Strings{"E2012 1:16-18"});
   CHECK(places("option encodin 2\n") == Strings{"E2011 1:8-14"});
   CHECK(places("option encoding 4\n") == Strings{"E2012 1:17-17"});
   CHECK(places("option debug yes\n") == Strings{"E2012 1:14-16"});

@@ -32,6 +32,10 @@ TEST_CASE("formulas keep their structure and lose only unary plus") {
   CHECK(typed("Happens(Fill(Cup1,0),0).") == "Happens(Fill(Cup1,0),0)");
   CHECK(typed("Delta: [event,time] !Happens(event,time).") ==
         "Delta: [event,time]!Happens(event,time)");
+  CHECK(typed("[time] count{cup: HoldsAt(Filled(cup),time)} >= time.") ==
+        "[time]count{cup:HoldsAt(Filled(cup),time)}>=time");
+  CHECK(typed("5 < sum{cup,level: 2*level: P(cup) & level>1}.") ==
+        "sum{cup,level:(2*level):(P(cup) & level>1)}>5");
   CHECK(typed("[object] {object} P(object).") == "[object]{object}P(object)");
 }
 
@@ -99,6 +103,23 @@ TEST_CASE("wrong names, sorts and shapes are located and explained") {
       {"Happens(Fill(Cup1,-1),0).", "E2110 12:19-20", "-1 lies outside"},
       {"[time] time = 0.5.", "E2111 12:15-17", "`0.5` is not an integer"},
       {"[time] time^2 = 4.", "E2112 12:8-13", "`^` is not supported"},
+      {"#count{cup: P(cup)} >= 1.", "E1020 12:1-6", "replace `#count` with `count`"},
+      {"count{cup; P(cup)}.", "E1025 12:7-9", "not as it should be before the end of the text"},
+      {"count{cup: 1: P(cup)} > 1.", "E1025 12:13-13", "before `:`"},
+      {"sum{level: P(Cup1)} > 1.", "E1025 12:19-19", "before `}`"},
+      {"sum{level: level: 1: P(Cup1)} > 1.", "E1025 12:20-20", "before `:`"},
+      {"count{} > 1.", "E1013 12:7-7", "found `}`"},
+      {"count{cup: P(cup) > 1.", "E1005 12:22-22", "`{` is not closed before `.`"},
+      {"P(count{cup: P(cup)).", "E1005 12:19-19", "`{` is not closed before `)`"},
+      {"count{cup: P(cup)}.", "E2115 12:1-18", "not compared with a number"},
+      {"count{cup: P(cup)}+1 > 1.", "E2115 12:1-18", "not compared with a number"},
+      {"P(count{cup: P(cup)}).", "E2115 12:3-20", "not compared with a number"},
+      {"1 < count{cup: P(cup)} & count{cup: P(cup)} = count{object: P(object)}.", "E2115 12:47-70",
+       "not compared with a number"},
+      {"count{cup: P(cup)} = Hall.", "E2108 12:22-25", "`=` needs integers, found `Hall`"},
+      {"sum{cup: cup: P(cup)} = 1.", "E2108 12:10-12", "`sum` needs integers, found `cup`"},
+      {"count{cupp: P(cupp)} = 1.", "E2103 12:7-10", "no sort `cupp`"},
+      {"count{cup: P(cup)} = 1 & P(cup).", "E2102 12:28-30", "variable `cup`"},
       {"[time] time = 99999999999999999999.", "E1002 12:15-34", "64 bits"},
       {"[time] time = -9223372036854775809.", "E1002 12:16-34", "64 bits"},
       {"[time] time = -(-9223372036854775808).", "E1002 12:15-37", "64 bits"},

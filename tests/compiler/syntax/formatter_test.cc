@@ -86,6 +86,8 @@ TEST_CASE("formatter: declarations and formulas get one spacing") {
   CHECK(formatted("L :P( ) .Q( ).") == "L: P().\nQ().\n");
   CHECK(formatted("((P()) & (Q())).\r\n") == "((P()) & (Q())).\n");
   CHECK(formatted("x = - 1 + -y * 2.") == "x=-1+-y*2.\n");
+  CHECK(formatted("2<= count{ a,b :P(a)&Q( b )}->sum{a : W(a)+1: P(a)}=3.") ==
+        "2<=count{a,b: P(a) & Q(b)} -> sum{a: W(a)+1: P(a)}=3.\n");
   CHECK(formatted("") == "");
   CHECK(formatted("\n\n") == "");
 }
@@ -109,6 +111,10 @@ TEST_CASE("formatter: long formulas are broken at their connectives") {
         "[time] !{agent1}\n  " + atom + " &\n  " + atom + ".\n");
   CHECK(formatted(atom + " | " + atom + " & " + atom + ".") ==
         atom + " |\n  " + atom + " &\n    " + atom + ".\n");
+  CHECK(formatted("count{agent1,object2: " + atom + " & " + atom + "}>=2.") ==
+        "count{agent1,object2: " + atom + " &\n      " + atom + "}>=2.\n");
+  CHECK(formatted("sum{agent1: W(agent1,2): " + atom + " | " + atom + "}>=2.") ==
+        "sum{agent1: W(agent1,2): " + atom + " |\n    " + atom + "}>=2.\n");
   const auto nested = formatted("L: [time] (" + atom + " | " + atom + ") & {x} (" + atom + " | (" +
                                 atom + " -> " + atom + ")).");
   CHECK(nested == "L: [time]\n  (" + atom + " |\n   " + atom + ") &\n  {x}\n    (" + atom +

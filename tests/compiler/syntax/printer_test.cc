@@ -21,7 +21,7 @@ using compiler::NodeId;
 using compiler::NodeKind;
 using compiler::Operator;
 
-constexpr std::string_view kNames = "a time27 Cat _x 0 12 0.5 Happens";
+constexpr std::string_view kNames = "a time27 Cat _x 0 12 0.5 Happens count sum";
 
 /// Random trees over a text that holds the names.
 class Generator {
@@ -30,13 +30,15 @@ class Generator {
 
   NodeId tree(std::uint32_t size) {
     if (size <= 1) return leaf();
-    switch (random_.below(8)) {
+    switch (random_.below(9)) {
       case 0:
         return unary(size);
       case 1:
         return quantifier(size);
       case 2:
         return apply(size);
+      case 3:
+        return aggregate(size);
       default:
         return binary(size);
     }
@@ -79,6 +81,18 @@ class Generator {
     node.kind = random_.below(2) == 0 ? NodeKind::kForall : NodeKind::kExists;
     std::vector<NodeId> children;
     for (std::uint32_t i = 0; i <= random_.below(3); ++i) children.push_back(leaf(4));
+    children.push_back(tree(size - 1));
+    return ast_.add(node, children.data(), children.size());
+  }
+
+  NodeId aggregate(std::uint32_t size) {
+    Node node;
+    node.kind = random_.below(2) == 0 ? NodeKind::kCount : NodeKind::kSum;
+    node.begin = node.kind == NodeKind::kCount ? 33 : 39;
+    node.name_length = node.kind == NodeKind::kCount ? 5 : 3;
+    std::vector<NodeId> children;
+    for (std::uint32_t i = 0; i <= random_.below(3); ++i) children.push_back(leaf(4));
+    if (node.kind == NodeKind::kSum) children.push_back(tree(size / 3));
     children.push_back(tree(size - 1));
     return ast_.add(node, children.data(), children.size());
   }
@@ -139,7 +153,8 @@ TEST_CASE("printer: no parenthesis is printed that could be left out") {
                             "2*(-a)*b",
                             "a-(b-c)",
                             "(a<b)<c",
-                            "!{x} P(x) & Q(x)"};
+                            "!{x} P(x) & Q(x)",
+                            "count{x,y: {z} P(x,y,z) | Q()}>=1 & sum{x: 2*W(x): P(x)}+1<3"};
   for (const auto& formula : formulas) {
     FrontEnd front;
     const auto file = front.add(formula);

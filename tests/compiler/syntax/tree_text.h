@@ -37,6 +37,13 @@ inline std::string tree_text(const compiler::Ast& ast, compiler::NodeId id) {
         out += (i != 0 ? "," : "") + child(i);
       return out + (all ? "]" : "}") + child(node.child_count - 1) + ")";
     }
+    case NodeKind::kCount:
+    case NodeKind::kSum:
+      out = std::string(ast.name(node)) + "{";
+      for (std::uint32_t i = 0; i < node.child_count; ++i) {
+        out += (i == 0 ? "" : i < node.bound_count() ? "," : ":") + child(i);
+      }
+      return out + "}";
   }
   return out;
 }

@@ -208,5 +208,68 @@ TEST_CASE("a way up to a mesh or an include is followed below the folders of the
   CHECK(body(scenario->world, "b").shapes.size() == 1);
 }
 
+TEST_CASE("a joint follows another one as the file says, and both count from where they begin") {
+  if (!reads_urdf()) return;
+  const auto robot = [](const std::string& mimic, const std::string& range) {
+    return urdf_link("a", 1, kMoments) + urdf_link("b", 1, kMoments) + urdf_link("c", 1, kMoments) +
+           urdf_link("d", 1, kMoments) + urdf_joint("one", "a", "b", limit_of(-1.0, 1.0)) +
+           urdf_joint("two", "a", "c", range + mimic) +
+           urdf_joint("three", "a", "d",
+                      limit_of(-9.0, 9.0) + "<mimic joint='two' multiplier='0.5'/>");
+  };
+  const std::string mimic = "<mimic joint='one' multiplier='-2' offset='0.4'/>";
+  Workspace workspace;
+  const auto scenario =
+      loaded(workspace, robot(mimic, limit_of(-0.6, 3.0)), ", positions: {one: 0.1}");
+  REQUIRE(scenario.has_value());
+  const auto &one = joint(scenario->world, "one"), &two = joint(scenario->world, "two"),
+             &three = joint(scenario->world, "three");
+  REQUIRE(two.follows.has_value());
+  CHECK(two.follows->leader == "one");
+  CHECK(two.follows->ratio == -2.0);
+  // Through the one between.
+  REQUIRE(three.follows.has_value());
+  CHECK(three.follows->leader == "one");
+  CHECK(three.follows->ratio == -1.0);
+  // -0.6 <= 0.4 - 2 q <= 3: q is from -1.3 to 0.5, and begins at 0.1.
+  CHECK(*one.low_rad == doctest::Approx(-1.1));
+  CHECK(*one.high_rad == doctest::Approx(0.4));
+  CHECK_FALSE(two.low_rad.has_value());
+  // At first `two` is at 0.2, about y at (0, 0, 3).
+  CHECK_FALSE(is_reported(workspace, "follow"));
+  const auto world = make_world(scenario->world);
+  const auto reset = world->reset(default_placements(world->layout()), 1);
+  CHECK_FALSE(reset.has_value());
+  const auto& c = body(scenario->world, "c");
+  CHECK(c.shapes.front().pitch_rad == doctest::Approx(0.2));
+}
+
+TEST_CASE("a joint that can follow nothing is said to move freely, or to be held") {
+  if (!reads_urdf()) return;
+  const auto robot = [](const std::string& mimic, const std::string& leader) {
+    return urdf_link("a", 1, kMoments) + urdf_link("b", 1, kMoments) + urdf_link("c", 1, kMoments) +
+           urdf_joint("one", "a", "b", limit_of(-1.0, 1.0), leader) +
+           urdf_joint("two", "a", "c", limit_of(-1.0, 1.0) + mimic);
+  };
+  struct FollowCase {
+    const char *mimic, *leader, *said, *more;
+  };
+  for (const FollowCase& one : std::vector<FollowCase>{
+           {"<mimic joint='two'/>", "revolute", "joints that follow none that moves", ""},
+           {"<mimic joint='none'/>", "revolute", "joints that follow none that moves", ""},
+           {"<mimic joint='one' multiplier='0'/>", "revolute", "joints that follow none", ""},
+           {"<mimic joint='one'/>", "fixed", "joints that follow one that is held fast", ""},
+           {"<mimic joint='one' offset='5'/>", "revolute", "which leave these no way", ""},
+           {"<mimic joint='one'/>", "revolute", "which follows `one`",
+            ", positions: {two: 0.5}"}}) {
+    CAPTURE(one.mimic);
+    CAPTURE(one.leader);
+    Workspace workspace;
+    const auto scenario = loaded(workspace, robot(one.mimic, one.leader), one.more);
+    CHECK(is_reported(workspace, one.said));
+    CHECK(scenario.has_value() == (std::string_view(one.more).empty()));
+  }
+}
+
 }  // namespace
 }  // namespace parallax::harness::test

@@ -64,7 +64,7 @@ const Words kTakenOver = {
      "fitaabb eulerseq meshdir texturedir discardvisual convexhull usethread fusestatic "
      "inertiafromgeom inertiagrouprange exactmeshinertia"},
     {"option", "gravity"},
-    {"flag", "gravity filterparent"},
+    {"flag", "gravity filterparent contact"},
     {"default", "class"},
     {"mesh", "name class file vertex face refpos refquat scale"},
     {"body", "name childclass pos" + kTurns},

@@ -159,6 +159,38 @@ TEST_CASE("a body that is led is told at its own place") {
                                  "(mocap), which stand; the first is `led`"});
 }
 
+TEST_CASE(
+    "nothing collides where MuJoCo's contacts are off, and a plane beside 0 becomes the floor") {
+  if (skips_mjcf()) return;
+  Workspace workspace;
+  const std::string both = "<worldbody><geom name='mark' size='0.1' pos='0 0 1'/>" +
+                           box_at(0, "a", "") + box_at(0, "b", "") + "</worldbody>";
+  auto scenario =
+      taken_over(workspace, file_with("<option><flag contact='disable'/></option>" + both));
+  REQUIRE(scenario.has_value());
+  const auto layout = lay_out(scenario->world);
+  const auto at = [&](const char* name) { return *layout.find_body(name); };
+  CHECK(layout.never_collide(at("a"), at("b")));
+  CHECK(layout.never_collide(at("a"), at("mark")));
+
+  const auto with_plane = [&](const std::string& planes) {
+    return file_with("<worldbody>" + planes + box_at(0, "a", "") + "</worldbody>");
+  };
+  const std::string low = "<geom type='plane' size='1 1 1' pos='0 0 -0.25'/>",
+                    lower = "<geom type='plane' size='1 1 1' pos='0 0 -2'/>",
+                    level = "<geom type='plane' size='1 1 1'/>";
+  scenario = taken_over(workspace, with_plane(level + low));
+  REQUIRE(scenario.has_value());
+  const double before = body(scenario->world, "a").p_WB.z();
+  scenario = taken_over(workspace, with_plane(lower + low));
+  REQUIRE(scenario.has_value());
+  CHECK(body(scenario->world, "a").p_WB.z() == doctest::Approx(before + 0.25));
+  const auto reports = workspace.reports();
+  CHECK(std::any_of(reports.begin(), reports.end(), [](const std::string& one) {
+    return one.find("heights of a floor that is not at 0") != one.npos;
+  }));
+}
+
 TEST_CASE("what MuJoCo keeps apart is kept apart, and said where it cannot be") {
   if (skips_mjcf()) return;
   const auto free = [](double x, const std::string& name, const char* bits) {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <numbers>
 
-#include "harness/engine/mujoco_module.h"
+#include "harness/engine/engine_module.h"
 #include "harness/import/import.h"
 #include "harness/import/mesh.h"
 #include "harness/world/shapes.h"
@@ -290,7 +290,7 @@ TEST_CASE("an arm in MJCF, put elsewhere and turned, is MuJoCo's own and stands 
 }
 
 TEST_CASE("what is shipped stands still in MuJoCo's own engine too") {
-  if (no_mjcf() || !has_mujoco()) return;
+  if (no_mjcf() || !has_engine(EngineKind::kMujoco)) return;
   for (const bool is_arm : {true, false}) {
     CAPTURE(is_arm);
     Workspace workspace;
@@ -301,7 +301,9 @@ TEST_CASE("what is shipped stands still in MuJoCo's own engine too") {
         std::string("  mjcf: ") + (is_arm ? "column_arm.xml\n" : "workshop.xml\n") + kCup));
     for (const auto& one : workspace.reports()) CHECK_MESSAGE(one.starts_with("W5144"), one);
     REQUIRE(scenario.has_value());
-    const auto world = make_mujoco_world(scenario->world);
+    WorldSpec spec = scenario->world;
+    spec.engine = EngineKind::kMujoco;
+    const auto world = make_world(spec);
     check_still(*world, 0.001);
   }
 }

@@ -1,6 +1,6 @@
 #include "harness/config/scenario.h"
 
-#include "harness/engine/mujoco_module.h"
+#include "harness/engine/engine_module.h"
 #include "tests/harness/config/scenario_text.h"
 
 namespace parallax::harness::test {
@@ -125,20 +125,23 @@ expect: {verdict: discrepancy, iterations: 1, max_simulations: 20, fluents: [Box
 
 TEST_CASE("an engine is for the simulator and for its world, and one that is missing is refused") {
   Workspace workspace;
-  for (const char* text :
-       {"simulator: mujoco\n", "simulator: {engine: mujoco, memory_mb: 200}\n"}) {
-    CAPTURE(text);
-    const auto scenario = workspace.load(std::string(kScenario) + text);
-    if (!has_mujoco()) {
-      CHECK_FALSE(scenario.has_value());
-      CHECK(workspace.reports().front().find("E5145") != std::string::npos);
-      CHECK(workspace.reports().front().find("libmujoco-dev") != std::string::npos);
-      continue;
+  for (const EngineKind engine : {EngineKind::kMujoco, EngineKind::kBullet}) {
+    const std::string name(to_string(engine));
+    for (const std::string& text :
+         {"simulator: " + name + "\n", "simulator: {engine: " + name + ", memory_mb: 200}\n"}) {
+      CAPTURE(text);
+      const auto scenario = workspace.load(std::string(kScenario) + text);
+      if (!has_engine(engine)) {
+        CHECK_FALSE(scenario.has_value());
+        CHECK(workspace.reports().front().find("E5145") != std::string::npos);
+        CHECK(workspace.reports().front().find("lib" + name + "-dev") != std::string::npos);
+        continue;
+      }
+      REQUIRE(scenario.has_value());
+      CHECK(scenario->simulator.is_built_in());
+      CHECK(scenario->simulator.engine == engine);
+      CHECK(scenario->world.engine == engine);
     }
-    REQUIRE(scenario.has_value());
-    CHECK(scenario->simulator.is_built_in());
-    CHECK(scenario->simulator.engine == EngineKind::kMujoco);
-    CHECK(scenario->world.engine == EngineKind::kMujoco);
   }
   const auto usual = workspace.load(kScenario);
   REQUIRE(usual.has_value());

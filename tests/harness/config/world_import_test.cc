@@ -6,6 +6,7 @@
 
 #include "harness/engine/ode_world.h"
 #include "harness/import/import.h"
+#include "harness/import/mesh.h"
 #include "tests/harness/config/imported_world.h"
 
 namespace parallax::harness::test {
@@ -46,6 +47,71 @@ TEST_CASE("where a model was looked for in vain is an input, too") {
   const auto inputs = workspace.files.inputs();
   const auto near = std::filesystem::canonical(workspace.folder() / "near") / "mug";
   CHECK(std::count(inputs.begin(), inputs.end(), near.string()) > 0);
+}
+
+TEST_CASE("packages lie in folders of other names, whatever kind of address names them") {
+  const std::string model =
+      "<sdf version='1.9'><model name='shelf'><link name='l'><inertial><mass>2</mass></inertial>"
+      "<collision name='c'><geometry><box><size>0.1 0.2 0.3</size></box></geometry></collision>"
+      "</link></model></sdf>";
+  const auto fill = [&](Workspace& workspace) {
+    std::filesystem::create_directories(workspace.folder() / "parts/mine/meshes");
+    workspace.write("parts/mine/model.config",
+                    "<model><name>shelf</name><sdf version='1.9'>model.sdf</sdf></model>");
+    workspace.write("parts/mine/model.sdf", model);
+    workspace.write("parts/mine/meshes/wedge.obj",
+                    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  };
+  const auto world = [](const std::string& uri) {
+    return "<sdf version='1.9'><world name='w'><include><uri>" + uri +
+           "</uri><pose>0 0 1 0 0 0</pose></include></world></sdf>";
+  };
+  const std::string packages = "  packages: {shelf: parts/mine}\n";
+  for (const char* uri : {"model://shelf", "package://shelf", "package://shelf/model.sdf",
+                          "https://fuel.gazebosim.org/1.0/someone/models/shelf",
+                          "https://fuel.gazebosim.org/1.0/someone/models/shelf/3",
+                          "https://fuel.ignitionrobotics.org/1.0/a/models/shelf/tip"}) {
+    if (!reads_sdf()) continue;
+    CAPTURE(uri);
+    Workspace workspace;
+    fill(workspace);
+    workspace.write("world.sdf", world(uri));
+    const auto loaded = workspace.load(scenario_with("  sdf: world.sdf\n" + packages + kCup));
+    REQUIRE(loaded.has_value());
+    CHECK(body(loaded->world, "shelf").mass_kg == 2.0);
+  }
+  for (const char* uri :
+       {"model://none", "model://../shelf", "package://..", "package:///mine",
+        "https://fuel.gazebosim.org/1.0/someone/worlds/shelf",
+        "https://fuel.gazebosim.org/1.0/someone/models/shelf/../../x", "file://parts/mine"}) {
+    if (!reads_sdf()) continue;
+    CAPTURE(uri);
+    Workspace workspace;
+    fill(workspace);
+    workspace.write("world.sdf", world(uri));
+    CHECK_FALSE(workspace.load(scenario_with("  sdf: world.sdf\n" + packages + kCup)).has_value());
+    CHECK(workspace.reports().front().starts_with("E5143 at 1:45"));
+  }
+  for (const auto& [mesh, is_there] : std::vector<std::pair<std::string, bool>>{
+           {"package://shelf/meshes/wedge.obj", true},
+           {"https://fuel.gazebosim.org/1.0/a/models/shelf/2/files/meshes/wedge.obj", true},
+           {"package://shelf/../mine/meshes/wedge.obj", true},
+           {"package://../parts/mine/meshes/wedge.obj", false},
+           {"package://other/meshes/wedge.obj", false}}) {
+    if (!reads_urdf() || !reads_meshes()) continue;
+    CAPTURE(mesh);
+    Workspace workspace;
+    fill(workspace);
+    workspace.write("robot.urdf",
+                    "<robot name='r'><link name='a'><inertial><mass value='1'/><inertia ixx='1' "
+                    "iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial><collision><geometry>"
+                    "<mesh filename='" +
+                        mesh + "'/></geometry></collision></link></robot>");
+    const auto loaded = workspace.load(
+        scenario_with("  urdf: {file: robot.urdf, at_m: [0, 0, 2]}\n" + packages + kCup));
+    REQUIRE(loaded.has_value());
+    CHECK((body(loaded->world, "a").shapes.front().form == ShapeForm::kHull) == is_there);
+  }
 }
 
 TEST_CASE("an office in SDF: includes, frames, a door on its hinge, and what is left out is said") {
@@ -237,7 +303,8 @@ TEST_CASE("files that no reader may see are refused in one line, at their place"
     workspace.write("world.sdf", one.text);
     std::filesystem::create_directories(workspace.folder() / "models/ring");
     std::filesystem::create_directory_symlink("/etc", workspace.folder() / "models/out");
-    workspace.write("models/ring/model.config", "<model><sdf>model.sdf</sdf></model>");
+    workspace.write("models/ring/model.config",
+                    "<model><name>shelf</name><sdf version='1.9'>model.sdf</sdf></model>");
     workspace.write("models/ring/model.sdf", with_uri("model://ring"));
     CHECK_FALSE(
         workspace.load(scenario_with("  sdf: world.sdf\n  models: models\n" + kCup)).has_value());

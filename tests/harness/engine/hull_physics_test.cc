@@ -367,8 +367,8 @@ TEST_CASE("probes find a hull where they share a point with it, rays where its p
   }
 }
 
-TEST_CASE("hulls that are boxes are as deep in each other as these boxes are, in MuJoCo") {
-  if (!has_mujoco()) return;  // engines() says so in the cases above
+void compare_hulls_with_boxes(EngineKind engine) {
+  CAPTURE(to_string(engine));
   HullChance chance;
   int deep = 0;
   for (int i = 0; i < 300; ++i) {
@@ -386,7 +386,7 @@ TEST_CASE("hulls that are boxes are as deep in each other as these boxes are, in
       upper.shapes.front().pitch_rad = pitch;
       WorldSpec spec = world_of({make("lower", {0.4, 0.2, 0.2}, {0.0, 0.0, 2.0}, 0.0), upper});
       spec.solver.start_penetration_m = 1e-4;
-      const auto world = make_world(stepped_by(EngineKind::kMujoco, spec));
+      const auto world = make_world(stepped_by(engine, spec));
       overlaps[is_hull ? 1 : 0] = world->reset(default_placements(world->layout()), 1);
     }
     REQUIRE(overlaps[0].has_value() == overlaps[1].has_value());
@@ -395,6 +395,10 @@ TEST_CASE("hulls that are boxes are as deep in each other as these boxes are, in
     CHECK(overlaps[1]->depth_m == doctest::Approx(overlaps[0]->depth_m).epsilon(0.11));
   }
   CHECK(deep > 50);
+}
+
+TEST_CASE("hulls that are boxes are as deep in each other as these boxes are") {
+  for (const EngineKind engine : engines_with_trees()) compare_hulls_with_boxes(engine);
 }
 
 TEST_CASE("a moving hull meets what its hull meets") {

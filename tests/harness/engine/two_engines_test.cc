@@ -1,5 +1,5 @@
-// Properties of a world at rest on which both engines must agree, and properties that only MuJoCo
-// has.
+// Properties of a world at rest on which all engines must agree, and properties of those that have
+// joint coordinates.
 
 #include <doctest/doctest.h>
 
@@ -65,15 +65,15 @@ class Chance {
 };
 
 struct Pair {
-  explicit Pair(const WorldSpec& spec)
+  Pair(const WorldSpec& spec, EngineKind engine)
       : ode(make_world(stepped_by(EngineKind::kOde, spec))),
-        mujoco(make_world(stepped_by(EngineKind::kMujoco, spec))) {}
-  std::unique_ptr<PhysicsWorld> ode, mujoco;
+        other(make_world(stepped_by(engine, spec))) {}
+  std::unique_ptr<PhysicsWorld> ode, other;
 };
 
-TEST_CASE("rays meet the same body at the same distance in both engines") {
-  if (!has_mujoco()) return;
-  const Pair pair(gallery());
+void compare_rays(EngineKind engine) {
+  CAPTURE(to_string(engine));
+  const Pair pair(gallery(), engine);
   Chance chance;
   const BodyMask none(kForms.size(), false);
   int hits = 0;
@@ -87,7 +87,7 @@ TEST_CASE("rays meet the same body at the same distance in both engines") {
       return pair.ode->find_obstacle(dot, none, 0.0).has_value();
     };
     if (inside(from) || inside(to)) continue;  // where a ray begins or ends in a body is of no use
-    const auto a = pair.ode->cast_ray(from, to, none), b = pair.mujoco->cast_ray(from, to, none);
+    const auto a = pair.ode->cast_ray(from, to, none), b = pair.other->cast_ray(from, to, none);
     CAPTURE(i);
     REQUIRE(a.has_value() == b.has_value());
     if (!a) continue;
@@ -97,10 +97,14 @@ TEST_CASE("rays meet the same body at the same distance in both engines") {
   }
   CHECK(hits > 300);
   // The floor from below, too.
-  const auto floor = pair.mujoco->cast_ray({9.0, 9.0, -1.0}, {9.0, 9.0, 1.0}, none);
+  const auto floor = pair.other->cast_ray({9.0, 9.0, -1.0}, {9.0, 9.0, 1.0}, none);
   REQUIRE(floor.has_value());
   CHECK(floor->body == "floor");
   CHECK(floor->distance_m == doctest::Approx(1.0));
+}
+
+TEST_CASE("rays meet the same body at the same distance in every engine") {
+  for (const EngineKind engine : engines_with_trees()) compare_rays(engine);
 }
 
 /// Is one of some points of the probe in a shape of the body?
@@ -117,10 +121,9 @@ bool shares_a_point(const PhysicsWorld& world, const Probe& probe, BodyId id, Ch
   return false;
 }
 
-TEST_CASE(
-    "probes of every form find what shares a point with them, and not what is clear of them") {
-  if (!has_mujoco()) return;
-  const Pair pair(gallery());
+void compare_probes(EngineKind engine) {
+  CAPTURE(to_string(engine));
+  const Pair pair(gallery(), engine);
   Chance chance;
   const BodyMask none(kForms.size(), false);
   int found = 0, free = 0, missed_by_ode = 0;
@@ -133,21 +136,26 @@ TEST_CASE(
     larger.size_m *= 1.03;
     CAPTURE(i);
     const BodyId id(static_cast<std::uint32_t>(i % 4));
-    const auto in_mujoco = pair.mujoco->find_obstacle(probe, none, 0.0);
+    const auto in_other = pair.other->find_obstacle(probe, none, 0.0);
     if (shares_a_point(*pair.ode, probe, id, chance)) {
-      REQUIRE(in_mujoco.has_value());
-      CHECK(in_mujoco->first == pair.mujoco->layout().bodies[id].name);
-      CHECK(pair.mujoco->overlaps(probe, id));
+      REQUIRE(in_other.has_value());
+      CHECK(in_other->first == pair.other->layout().bodies[id].name);
+      CHECK(pair.other->overlaps(probe, id));
       if (!pair.ode->overlaps(probe, id)) ++missed_by_ode;
       ++found;
     } else if (!pair.ode->find_obstacle(larger, none, 0.0)) {
-      CHECK_FALSE(in_mujoco.has_value());
+      CHECK_FALSE(in_other.has_value());
       ++free;
     }
   }
   CHECK(found > 500);
   CHECK(free > 500);
   CHECK(100 * missed_by_ode < found);  // a box that lies in a cylinder as a whole, seldom
+}
+
+TEST_CASE(
+    "probes of every form find what shares a point with them, and not what is clear of them") {
+  for (const EngineKind engine : engines_with_trees()) compare_probes(engine);
 }
 
 TEST_CASE("the depth of boxes in each other is that of geometry: by faces, by a corner, by edges") {
@@ -184,7 +192,7 @@ TEST_CASE("the depth of boxes in each other is that of geometry: by faces, by a 
   }
 }
 
-TEST_CASE("a start in which bodies overlap is refused by both engines, with the depth") {
+TEST_CASE("a start in which bodies overlap is refused by every engine, with the depth") {
   for (const EngineKind engine : engines()) {
     CAPTURE(to_string(engine));
     const auto world = make_world(
@@ -262,7 +270,7 @@ TEST_CASE("a mass set at reset counts, and leaves nothing behind") {
   }
 }
 
-TEST_CASE("a state on its way to infinity is lost in both engines, and no file is written") {
+TEST_CASE("a state on its way to infinity is lost in every engine, and no file is written") {
   for (const EngineKind engine : engines()) {
     CAPTURE(to_string(engine));
     WorldSpec spec = world_of({box_body("rocket", {0.1, 0.1, 0.1}, {0.0, 0.0, 1.0}, 1e-3)});
@@ -310,7 +318,7 @@ TEST_CASE("boxes that lie flat on each other, turned by 45 degrees, stay where t
   }
 }
 
-TEST_CASE("a ring of joints is refused for MuJoCo by its joint, and taken by ODE") {
+TEST_CASE("a ring of joints is refused by its joint where joints must make trees") {
   WorldSpec spec = world_of({box_body("a", {0.1, 0.1, 0.1}, {0.0, 0.0, 1.0}, 1.0),
                              box_body("b", {0.1, 0.1, 0.1}, {1.0, 0.0, 1.0}, 1.0)});
   JointSpec there;
@@ -322,10 +330,13 @@ TEST_CASE("a ring of joints is refused for MuJoCo by its joint, and taken by ODE
   std::swap(back.parent, back.child);
   spec.joints = {there, back};
   CHECK(check_world(spec).empty());
-  const auto problems = check_world(stepped_by(EngineKind::kMujoco, spec));
-  REQUIRE(problems.size() == 1);
-  CHECK(problems.front().path == "joints/back");
-  CHECK(problems.front().message.find("ring") != std::string::npos);
+  for (const EngineKind engine : {EngineKind::kMujoco, EngineKind::kBullet}) {
+    const auto problems = check_world(stepped_by(engine, spec));
+    REQUIRE(problems.size() == 1);
+    CHECK(problems.front().path == "joints/back");
+    CHECK(problems.front().message.find("ring") != std::string::npos);
+    CHECK(problems.front().message.ends_with(std::string(engine_title(engine)) + " needs one"));
+  }
 }
 
 TEST_CASE("what stands on the floor is touched from below, what a pad presses by the pad") {

@@ -101,6 +101,18 @@ constexpr Misbehaviour kMisbehaviours[] = {
      "if method == 'act' and result['status'] == 'truncated': result.update(status='ok', "
      "sim_time=2.0)",
      "time limit", "ran 2 s with a limit of 1 s"},
+    {"tells the time since the reset",
+     "if method == 'reset': memory['clock'] = 0.0\n"
+     "    if method == 'act': memory['clock'] += result['sim_time']\n"
+     "    if method == 'act': result['sim_time'] = memory['clock']",
+     "time limit", "looks like a clock since the reset"},
+    {"tells the time since it began",
+     "if method == 'act': memory['clock'] = memory.get('clock', 0.0) + result['sim_time']\n"
+     "    if method == 'act': result['sim_time'] = memory['clock']",
+     "time limit", "looks like a clock that no reset puts back"},
+    {"takes time for what it says to be timeless",
+     "if method == 'hello': result['actions'][0]['instant'] = True", "actions",
+     "`push` is said to be `instant`, and took 2 s"},
     {"writes to standard output", "if method == 'act': print('Loading plugin...')", "actions",
      "malformed reply to `act`: the line is not JSON: `Loading plugin...`"},
     {"says NaN",
@@ -232,6 +244,28 @@ TEST_CASE("simulators without a fault are said to have none, and what they suppo
   }
   const auto text = python.parallax(check_command("good.py"));
   CHECK(text.out.find("no fault, 0 warnings") != std::string::npos);
+}
+
+TEST_CASE(
+    "timeless actions need no limit and no word of warning where they are said to be instant") {
+  if (skipped_without_python()) return;
+  const std::string timeless =
+      "if method == 'act': result['sim_time'] = 0.0\n"
+      "    if method == 'act' and result['status'] == 'truncated': result['status'] = 'ok'\n";
+  const CliFixture cli;
+  cli.write("untold.py", simulator_with(timeless));
+  const auto untold = cli.parallax(check_command("untold.py"));
+  CHECK(untold.code == 0);
+  CHECK(untold.out.find("`push` changed something in no simulated time; say `sim_time`, or "
+                        "`instant`") != std::string::npos);
+  cli.write("told.py",
+            simulator_with(timeless +
+                           "    if method == 'hello': result['actions'][0]['instant'] = True"));
+  const auto told = cli.parallax(check_command("told.py"));
+  CAPTURE(told.out);
+  CHECK(told.code == 0);
+  CHECK(told.out.find("no fault, 0 warnings") != std::string::npos);
+  CHECK(told.out.find("every action that was tried is said to be instant") != std::string::npos);
 }
 
 TEST_CASE("the built-in simulator keeps the protocol, too") {

@@ -36,11 +36,11 @@ TEST_CASE("a file of bounds that guards nothing is refused") {
   }
 }
 
-TEST_CASE("a question is slow from one and a half times its recorded cost on") {
-  CHECK(judge_question(1.49, 1.0) == BoundVerdict::kWithin);
-  CHECK(judge_question(1.5, 1.0) == BoundVerdict::kExceeded);
+TEST_CASE("a question is slow from one and a quarter times its recorded cost on") {
+  CHECK(judge_question(1.24, 1.0) == BoundVerdict::kWithin);
+  CHECK(judge_question(1.25, 1.0) == BoundVerdict::kExceeded);
   CHECK(judge_question(0.5, 1.0) == BoundVerdict::kFaster);
-  CHECK(judge_question(0.7, 1.0) == BoundVerdict::kWithin);
+  CHECK(judge_question(0.81, 1.0) == BoundVerdict::kWithin);
   CHECK(judge_question(1.0, std::nullopt) == BoundVerdict::kUnknown);
 }
 

@@ -5,17 +5,15 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <atomic>
-#include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compiler/sema/check.h"
 #include "compiler/syntax/loader.h"
-#include "tools/learn/learned_model.h"
+#include "tests/tools/learn/taught_world.h"
 #include "tools/learn/rule_units.h"
-#include "tools/repair/domain_model.h"
 
 namespace parallax::tools {
 namespace {
@@ -38,24 +36,9 @@ const std::string kWorld =
     "[time] HoldsAt(Free(),time) <-> !({thing} HoldsAt(Held(thing),time)).\n";
 
 /// Runs of the world of kWorld, in which doors and full hands matter.
-class Runs {
+class Runs : public TaughtWorld {
  public:
-  Runs() {
-    const auto file = files_.add("world.e", kWorld);
-    ast_ = std::make_unique<compiler::ModelAst>(
-        *compiler::load_model_text(file, ".", {}, files_, sink_));
-    compiler::CheckOptions check;
-    check.time_lower = 0;
-    check.time_upper = 1;
-    typed_ =
-        std::make_unique<compiler::TypedModel>(*compiler::check_model(*ast_, files_, sink_, check));
-    vocabulary_ = std::make_unique<LearnVocabulary>(*typed_);
-    std::string why;
-    model_ = compile_text(kWorld, 1, context_, why);
-    REQUIRE(model_);
-    completion_ = std::make_unique<StateCompletion>(*model_, *vocabulary_, context_.stop());
-    observations_ = std::make_unique<Observations>(*vocabulary_, *completion_);
-  }
+  Runs() : TaughtWorld(kWorld) {}
 
   /// Places of the robot and of the things; "held" in a hand. `lost`: nothing is ever held.
   struct State {
@@ -64,42 +47,23 @@ class Runs {
 
   void go(State state, const std::vector<std::string>& events, bool slips = false) {
     Evidence run;
-    run.ids = {"1." + std::to_string(++count_)};
     run.states.push_back(seen(state));
     for (const auto& event : events) {
       move(state, event, slips);
       run.steps.push_back({event, false, ""});
       run.states.push_back(seen(state));
     }
-    CHECK_FALSE(observations_->add(run).has_value());
-    all_.push_back(run);
+    add(std::move(run));
   }
 
   /// The box is neither in the hand nor anywhere afterwards.
   void vanishes(State state, const std::string& event) {
     Evidence run;
-    run.ids = {"1." + std::to_string(++count_)};
     run.states.push_back(seen(state));
     run.steps.push_back({event, false, ""});
     state.box = "nowhere";
     run.states.push_back(seen(state));
-    CHECK_FALSE(observations_->add(run).has_value());
-    all_.push_back(run);
-  }
-
-  LearnedEffects learn() const {
-    const std::atomic<bool> stop{false};
-    return learn_effects(*observations_, {}, {}, stop);
-  }
-  std::set<std::string> axioms() const {
-    std::set<std::string> out;
-    for (const auto& rule : learn().rules) out.insert(print(rule, *vocabulary_));
-    return out;
-  }
-  RunsCheck check() {
-    const auto effects = learn();
-    const auto text = learned_text("; Learned.", kWorld, effects, *vocabulary_, "");
-    return check_runs(text, all_, effects.rules, *vocabulary_, context_);
+    add(std::move(run));
   }
 
  private:
@@ -123,18 +87,6 @@ class Runs {
     out["Held(lamp)"] = state.lamp == "held";
     return out;
   }
-
-  base::SourceFiles files_;
-  base::DiagnosticSink sink_;
-  Context context_;
-  std::unique_ptr<compiler::ModelAst> ast_;
-  std::unique_ptr<compiler::TypedModel> typed_;
-  std::unique_ptr<LearnVocabulary> vocabulary_;
-  std::optional<compiler::CompiledModel> model_;
-  std::unique_ptr<StateCompletion> completion_;
-  std::unique_ptr<Observations> observations_;
-  std::vector<Evidence> all_;
-  int count_ = 0;
 };
 
 TEST_CASE("one step teaches the general effect, without a condition") {

@@ -20,6 +20,24 @@ if(NOT code EQUAL 2)
   message(FATAL_ERROR "the example without a scenario ended with ${code}")
 endif()
 
+# A client of pkg-config has folders as the repository has them: neither hides headers of the other.
+file(WRITE ${WORK}/own/runtime/trace/trace.h "#define OWN_HEADER 1\n")
+file(WRITE ${WORK}/main.h "#include \"runtime/trace/trace.h\"\n#if OWN_HEADER != 1\n#error another header\n#endif\n")
+find_program(pkg_config pkg-config REQUIRED)
+file(GLOB_RECURSE pc ${WORK}/prefix/parallax.pc)
+cmake_path(GET pc PARENT_PATH pc)
+execute_process(COMMAND ${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${pc} ${pkg_config} --cflags --libs parallax
+  OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+separate_arguments(flags UNIX_COMMAND "${flags}")
+set(client -std=c++20 -include ${WORK}/main.h ${SOURCE}/docs/guide/library/example.cc)
+run(c++ ${client} -o ${WORK}/by_pkg_config -I${WORK}/own ${flags})
+run(c++ ${client} -fsyntax-only ${flags} -I${WORK}/own)
+file(GLOB_RECURSE made ${WORK}/build/flags.make ${WORK}/build/build.ninja)
+file(STRINGS "${made}" hiding REGEX "${WORK}/prefix/include/parallax( |$)")
+if(NOT made OR hiding)
+  message(FATAL_ERROR "clients of CMake look for headers in include/parallax: ${hiding}")
+endif()
+
 # What the library is for is installed with it.
 foreach(page library.md examples/example.cc examples/CMakeLists.txt)
   if(NOT EXISTS ${WORK}/prefix/share/doc/libparallax-dev/${page})

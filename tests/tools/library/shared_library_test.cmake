@@ -45,9 +45,9 @@ execute_process(COMMAND ${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${pc} ${pkg_conf
 separate_arguments(flags UNIX_COMMAND "${flags}")
 cmake_path(GET pc PARENT_PATH library)
 file(WRITE ${WORK}/own/runtime/trace/trace.h "#define OWN_HEADER 1\n")
-file(WRITE ${WORK}/own/main.h "#include \"runtime/trace/trace.h\"\n#if OWN_HEADER != 1\n#error another header\n#endif\n")
+file(WRITE ${WORK}/main.h "#include \"runtime/trace/trace.h\"\n#if OWN_HEADER != 1\n#error another header\n#endif\n")
 run(c++ -std=c++20 -Wall -Wextra -Werror ${SOURCE}/tests/tools/library/callbacks.cc -o ${WORK}/callbacks ${flags}
-    -I${WORK}/own -include ${WORK}/own/main.h -Wl,-rpath,${library})
+    -I${WORK}/own -include ${WORK}/main.h -Wl,-rpath,${library})
 expect(0 "^all hold" ${WORK}/callbacks ${regions}/scenario.yaml ${WORK}/three.e ${WORK}/callbacks.out)
 
 # The interface, and nothing of the house, is seen from outside.

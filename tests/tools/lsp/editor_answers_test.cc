@@ -40,6 +40,20 @@ TEST_CASE("what a plan performs leads to the table's entry and to the model's ev
   CHECK(hover.find("event PickUp()") != std::string::npos);
 }
 
+TEST_CASE("references of an event are also the performs of plans, which a rename leaves alone") {
+  Desk desk;
+  desk.open("domain.e");
+  auto at = desk.at("domain.e", "PickUp()");
+  const auto references = lines_of(desk.editor.ask("textDocument/references", at));
+  for (const auto* place : {"domain.e:12", "robot.bind:5", "fetch.lisp:12"}) {
+    CAPTURE(place);
+    CHECK(references.count(place) == 1);
+  }
+  at["newName"] = "Grasp";
+  for (const auto& [where, edits] : desk.editor.ask("textDocument/rename", at)["changes"].items())
+    CHECK(!where.ends_with(".lisp"));
+}
+
 TEST_CASE("a table's entry knows the plans that perform it, and a function its calls") {
   Desk desk;
   desk.open("robot.bind");

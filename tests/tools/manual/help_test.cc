@@ -88,6 +88,7 @@ TEST_CASE("`help` tells of commands and topics, and names the nearest where ther
   CHECK(has(near.err, "there is no command or topic `exit-code`"));
   CHECK(has(near.err, "replace `exit-code` with `exit-codes`"));
   CHECK(has(cli.parallax({"help", "rnu"}).err, "with `run`"));
+  CHECK(has(cli.parallax({"help", "radians"}).err, "docs/README.md"));
   CHECK(has(cli.parallax({"man", "trcaes"}).err, "with `traces`"));
   // Hidden commands have no help of their own.
   CHECK(cli.parallax({"help", "worker"}).code == 2);

@@ -73,7 +73,7 @@ TEST_CASE("rounds that end with a clean run and a refuted model do not end clean
         json_of(cli, {"repair", "out", "--loop", "--out", "fixed", "--apply", "1"}, 1);
     CAPTURE(report.dump(1));
     CHECK(report.at("end") == "refuted");
-    CHECK(mentions(report.at("why"), "a random sequence of events refutes it: "));
+    CHECK(mentions(report.at("why"), "refuted by a random sequence of events: "));
     CHECK(mentions(cli.read("fixed/rounds.txt"), "refuted: the run after it is clean"));
     CHECK(cli.read("model.e") == before);
   }

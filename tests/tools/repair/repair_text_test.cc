@@ -85,7 +85,7 @@ TEST_CASE("what random sequences say, of which events, and what decided the rank
   CHECK(
       says("Right on 38 of 38 fresh random sequences of the plan's events, and on 37 of the 40 "
            "that ordered the proposals; refuted by Pull()."));
-  CHECK(is_refuted(proposal, result));
+  CHECK(is_refuted_by_sequence(proposal, result));
 
   CHECK_FALSE(says("only if events happen that nothing demands"));
   proposal.verdict.runs_undemanded = 2;
@@ -99,7 +99,7 @@ TEST_CASE("what random sequences say, of which events, and what decided the rank
   proposal.open = true;
   CHECK_FALSE(says("random sequence"));
   CHECK_FALSE(json().contains("sequences_right"));
-  CHECK_FALSE(is_refuted(proposal, result));
+  CHECK_FALSE(is_refuted_by_sequence(proposal, result));
 }
 
 }  // namespace

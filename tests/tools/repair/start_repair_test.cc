@@ -13,7 +13,8 @@ constexpr const char* kStart =
 
 /// Two doors, of which one is locked, and a way that is dark: the light is off.
 struct Doors : CliFixture {
-  Doors(const std::string& right, const std::string& wrong, const std::string& world = kStart) {
+  Doors(const std::string& right, const std::string& wrong, const std::string& world = kStart,
+        const std::string& law = "") {
     const std::string truth =
         "sort door\ndoor left, right\n"
         "fluent Shut(door)\nfluent Locked(door)\nfluent Lit()\nfluent Way()\nnoninertial Way\n"
@@ -21,7 +22,8 @@ struct Doors : CliFixture {
         "[door,time] !HoldsAt(Locked(door),time) -> Terminates(Open(door),Shut(door),time).\n"
         "[door,time] Terminates(Unlock(door),Locked(door),time).\n"
         "[time] Initiates(Press(),Lit(),time).\n"
-        "[time] HoldsAt(Way(),time) <-> !HoldsAt(Shut(right),time) & !HoldsAt(Lit(),time).\n";
+        "[time] HoldsAt(Way(),time) <-> !HoldsAt(Shut(right),time) & !HoldsAt(Lit(),time).\n" +
+        law;
     write("truth.e", truth);
     write("model.e", truth);
     write("truth_start.e", world);
@@ -72,6 +74,26 @@ struct Doors : CliFixture {
   }
 };
 
+TEST_CASE("a constraint that contradicts the start, so that the model has no execution") {
+  const std::string right = "HoldsAt(Lit(),time) -> !HoldsAt(Shut(right),time)";
+  for (const std::string wrong : {"!HoldsAt(Lit(),time) -> !HoldsAt(Shut(right),time)",
+                                  "!HoldsAt(Lit(),time) & !HoldsAt(Shut(right),time)"}) {
+    CAPTURE(wrong);
+    const Doors cli(right, wrong, kStart, "[time] " + right + ".\n");
+    CHECK(cli.run().err.find("E7001") != std::string::npos);
+    const auto report = json_of(cli, {"repair", "out"}, 1);
+    CAPTURE(report.dump(1));
+    // Only the constraint is changed or dropped, as all else is right.
+    for (const auto& each : report.at("proposals")) {
+      CHECK(mentions(each.at("words"), "(model.e:16)"));
+    }
+    CHECK(mentions(report.at("proposals").at(1).at("words"), "in the place of"));
+    CHECK(cli.parallax({"repair", "out", "--apply", "2"}).code == 0);
+    std::filesystem::remove_all(cli.folder() / "out");
+    CHECK(cli.run().code == 0);
+  }
+}
+
 TEST_CASE("the start says the opposite of what the world has") {
   const Doors cli("!HoldsAt(Lit(),0)", "HoldsAt(Lit(),0)");
   const auto report = cli.first();
@@ -99,6 +121,38 @@ TEST_CASE("a start that is one of several of the world is not wrong") {
                   "[door] HoldsAt(Shut(door),0).\n[door] HoldsAt(Locked(door),0) <-> door=left.\n");
   CHECK(cli.run().code == 0);
   CHECK(cli.parallax({"repair", "out"}).code == 0);
+}
+
+const std::string kWay =
+    "[time] HoldsAt(Way(),time) <-> !HoldsAt(Shut(right),time) & !HoldsAt(Lit(),time).\n";
+
+TEST_CASE("a definition that is missing is found, and facts that leave the fluent open say so") {
+  const Doors cli(kWay, "");
+  CHECK(cli.run().code == 3);
+  const auto proposals = json_of(cli, {"repair", "out"}, 1).at("proposals");
+  CAPTURE(proposals.dump(1));
+  CHECK(mentions(proposals.at(0).at("words"), "a definition is missing: "));
+  CHECK(proposals.at(0).at("leaves_open") == "");
+  int facts = 0, right = 0;
+  for (const auto& proposal : proposals) {
+    const bool is_fact = mentions(proposal.at("words"), "a fact of the start is missing");
+    facts += is_fact ? 1 : 0;
+    CHECK(proposal.at("leaves_open") == (is_fact ? "Way()" : ""));
+    right += mentions(proposal.at("patch"), "+" + kWay) ? 1 : 0;
+  }
+  CHECK(facts > 0);
+  CHECK(right == 1);
+}
+
+TEST_CASE("a definition that is wrong at the start is told from wrong facts by a run of the plan") {
+  const std::string body = "!HoldsAt(Shut(right),time) & !HoldsAt(Lit(),time)";
+  for (const std::string wrong :
+       {"HoldsAt(Shut(right),time) & !HoldsAt(Lit(),time)", "!HoldsAt(Lit(),time)"}) {
+    CAPTURE(wrong);
+    const auto report = Doors(body, wrong).first();
+    CHECK(report.at("proposals").at(0).at("leaves_open") == "");
+    CHECK(report.at("sequences_choosing") >= 1);
+  }
 }
 
 TEST_CASE("the text names what the world has at the start") {

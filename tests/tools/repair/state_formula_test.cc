@@ -54,6 +54,49 @@ TEST_CASE("a definition names another fluent, another argument, or the opposite"
   }
 }
 
+TEST_CASE("a definition has one sign in the place of the other") {
+  const Lamp cli(Mistakes{{"HoldsAt(On(room),time) & HoldsAt(Fuse()",
+                           "HoldsAt(On(room),time) | ; one & the other\n  HoldsAt(Fuse()"}});
+  CHECK(mentions(cli.first(), "with `&` in the place of `|`"));
+}
+
+/// Three valves that are opened and closed, and a law about them.
+struct Valves : MistakenWorld {
+  Valves(const std::string& law, const Mistakes& mistakes)
+      : MistakenWorld(
+            "sort valve\nvalve left, right, main\n"
+            "fluent Open(valve)\nfluent Flow()\n" +
+                law +
+                "event Turn(valve)\nevent Close(valve)\n\n"
+                "[valve,time] Initiates(Turn(valve),Open(valve),time).\n"
+                "[valve,time] Terminates(Close(valve),Open(valve),time).\n",
+            "[valve] !HoldsAt(Open(valve),0).\n",
+            {{"Turn(left)", "Open(left)"},
+             {"Close(left)", "!Open(left)"},
+             {"Turn(right)", "Open(right)"},
+             {"Turn(main)", "Open(main)"},
+             {"Turn(left)", "Open(left)"}},
+            mistakes) {}
+};
+
+TEST_CASE("a constraint has one sign in the place of the other") {
+  // One event at a time: else the world opens the main valve with the second one.
+  const Valves cli(
+      "[time] HoldsAt(Open(left),time) & HoldsAt(Open(right),time) -> HoldsAt(Open(main),time).\n"
+      "[event1,event2,time] Happens(event1,time) & Happens(event2,time) -> event1=event2.\n",
+      Mistakes{{"(left),time) & ", "(left),time) | "}});
+  CHECK(mentions(cli.first(), "with `&` in the place of `|`"));
+}
+
+TEST_CASE("a definition of three parts has one sign in the place of the other") {
+  const std::string law =
+      "noninertial Flow\n"
+      "[time] HoldsAt(Flow(),time) <->\n"
+      "  HoldsAt(Open(left),time) & HoldsAt(Open(right),time) | HoldsAt(Open(main),time).\n";
+  const Valves cli(law, Mistakes{{"(left),time) & ", "(left),time) | "}});
+  CHECK(mentions(cli.first(), "behind `HoldsAt(Open(left),time)`"));
+}
+
 /// Two boxes that spill what is in them when they are opened or thrown.
 struct Boxes : MistakenWorld {
   explicit Boxes(const Mistakes& mistakes)

@@ -1,6 +1,6 @@
-// The workflows of docs/guide/regression.md, step by step, in a scratch repository. The parts of a
-// service are simulated: a checkout is a clone, an artifact a copy. Steps called `install` are not
-// run, as the program is there.
+// The workflows of docs/guide/regression.md and docs/guide/ci, step by step, in a scratch
+// repository. The parts of a service are simulated: a checkout is a clone, an artifact a copy.
+// Steps called `install` are not run, as the program is there.
 
 #include <doctest/doctest.h>
 #include <yaml-cpp/yaml.h>
@@ -24,25 +24,31 @@ bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// The blocks of the page, by the file that their first line names.
+std::string file_text(const fs::path& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The rules that the page shows and the files beside it, by the place that their first line names.
 std::map<std::string, std::string> files_of_page() {
-  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/guide/regression.md");
+  const auto guide = fs::path(PARALLAX_SOURCE_DIR) / "docs/guide";
   std::map<std::string, std::string> out;
-  std::string line, block;
-  const auto end_block = [&] {
-    if (block.starts_with("# ")) out[block.substr(2, block.find('\n') - 2)] = block;
-    block.clear();
+  const auto add = [&](const std::string& text) {
+    REQUIRE(text.starts_with("# "));
+    out[text.substr(2, text.find('\n') - 2)] = text;
   };
-  while (std::getline(in, line)) {
-    if (line.starts_with("    ")) {
-      block += line.substr(4) + '\n';
-    } else if (line.empty() && !block.empty()) {
-      block += '\n';
-    } else {
-      end_block();
+  for (const auto& file : fs::directory_iterator(guide / "ci")) add(file_text(file.path()));
+  std::istringstream page(file_text(guide / "regression.md"));
+  std::string rules;
+  for (std::string line; std::getline(page, line);) {
+    const bool begins = line == "    # gate.yaml";
+    if (begins || (!rules.empty() && line.starts_with("    "))) {
+      rules += line.substr(4) + '\n';
+    } else if (!rules.empty()) {
+      break;
     }
   }
-  end_block();
+  add(rules);
   return out;
 }
 

@@ -14,7 +14,7 @@
 
 #include "compiler/base/hash.h"
 #include "harness/campaign/trial.h"
-#include "harness/engine/mujoco_module.h"
+#include "harness/engine/engine_module.h"
 #include "harness/engine/world_check.h"
 #include "harness/robot/ode_simulator.h"
 #include "tools/app/scenario_model.h"
@@ -30,18 +30,12 @@ using harness::EngineKind;
 constexpr double kRounding = 1e-9;
 constexpr std::int64_t kSimulations = 10;
 
-std::vector<EngineKind> engines() {
-  std::vector<EngineKind> all = {EngineKind::kOde};
-  if (harness::has_mujoco()) all.push_back(EngineKind::kMujoco);
-  return all;
-}
-
 void print_machines() {
   const std::vector<double> steps_ms = {4.0, 2.0, 1.0, 0.5};
   fmt::print("| machine | held against | engine | 4 ms | 2 ms | 1 ms | 0.5 ms | order |\n");
   fmt::print("|---|---|---|---|---|---|---|---|\n");
   for (const auto& machine : machines()) {
-    for (const auto engine : engines()) {
+    for (const auto engine : harness::engines_here()) {
       fmt::print("| {} | {} | {} |", machine.name, machine.held_against, to_string(engine));
       std::vector<double> errors;
       for (const double step_ms : steps_ms) {
@@ -74,7 +68,7 @@ void print_grips() {
   };
   for (const auto& [name, least] :
        {std::pair{"force of a grip", grip}, std::pair{"friction on a slope", slope}}) {
-    for (const auto engine : engines()) {
+    for (const auto engine : harness::engines_here()) {
       fmt::print("| least {}, by Coulomb's law 1 | {} |", name, to_string(engine));
       for (const double angle : {0.0, 15.0, 30.0, 45.0}) {
         fmt::print(" {:.3f} |", least(engine, angle * kDegree_rad));
@@ -82,7 +76,7 @@ void print_grips() {
       fmt::print("\n");
     }
   }
-  for (const auto engine : engines()) {
+  for (const auto engine : harness::engines_here()) {
     fmt::print("\ncreep of a load held with twice the force that it needs, {}: {:.2g} mm/s\n",
                to_string(engine), 1e3 * creep_m_s(engine, kStep_s));
   }
@@ -176,7 +170,7 @@ int main(int count, char** arguments) {
   fmt::print("|---|---|---|---|---|---|\n");
   std::fflush(stdout);
   for (int i = 1; i < count; ++i) {
-    for (const auto engine : engines()) {
+    for (const auto engine : parallax::harness::engines_here()) {
       print_speed(arguments[i], engine);
       std::fflush(stdout);
     }

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/engine/mujoco_module.h"
+#include "harness/engine/engine_module.h"
 #include "tools/bench/engines/grip_trials.h"
 
 namespace parallax::tools {
@@ -78,8 +78,7 @@ void print_cell(const GripCell& cell, const Selection& chosen) {
 }
 
 void print_table(const Selection& chosen) {
-  std::vector<EngineKind> engines = {EngineKind::kOde};
-  if (harness::has_mujoco()) engines.push_back(EngineKind::kMujoco);
+  const std::vector<EngineKind> engines = harness::engines_here();
   fmt::print(
       "| load | margin | step | engine | slipped | lost | most slip of what was held | steps "
       "solved again | messages of unsolved steps |\n|---|---|---|---|---|---|---|---|---|\n");

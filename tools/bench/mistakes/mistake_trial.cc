@@ -242,7 +242,7 @@ void MistakeTrial::propose(const std::vector<Mistake>& mistakes, const std::stri
   const auto& first = proposals[0];
   outcome.first = first.value("words", "");
   outcome.first_is_marked = first.value("only_begins", false) || is_filled(first, "tied") ||
-                            is_filled(first, "refuted_by");
+                            is_filled(first, "refuted_by") || is_filled(first, "leaves_open");
   const auto other = run_of == kFirst ? kSecond : kFirst;
   const auto wrong_model = text_of(with_mistakes(model_.rules, mistakes, false));
   const auto wrong_start = text_of(with_mistakes(model_.start, mistakes, true));
