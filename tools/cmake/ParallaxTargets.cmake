@@ -184,6 +184,20 @@ function(parallax_headers target)
   target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
 endfunction()
 
+# parallax_module_headers(LIBRARY a.h ...): headers of a module alone, which include LIBRARY's. Called before the folder
+# that they lie in, which would install them otherwise. The preset `headers` compiles them where LIBRARY is there.
+function(parallax_module_headers library)
+  list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  set_property(GLOBAL APPEND PROPERTY parallax_headers ${ARGN})
+  if(TARGET ${library})
+    string(MAKE_C_IDENTIFIER headers_of_${library} name)
+    add_library(${name} INTERFACE)
+    target_include_directories(${name} INTERFACE ${PROJECT_SOURCE_DIR})
+    target_link_libraries(${name} INTERFACE ${library} Eigen3::Eigen)
+    target_sources(${name} INTERFACE FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARGN})
+  endif()
+endfunction()
+
 # parallax_install_library(LIBRARY): exports the interface library with everything below it, so that
 # `find_package(parallax)` finds it. Headers lie in include/parallax, by their folders in the repository, and name each
 # other as clients name them: `parallax/runtime/...`. So no folder of a client is hidden, and none hides theirs.
